@@ -89,6 +89,23 @@ function(boxtree_add_library name)
   set_target_properties(boxtree_${name} PROPERTIES EXPORT_NAME ${name} BOXTREE_PARTS "${parts}")
 endfunction()
 
+# boxtree_export_only(TARGET VERSION SYMBOLS): a shared library exports SYMBOLS, as its version VERSION, and no
+# others: templates of the standard library are visible whatever the compiler is told, so the linker is told.
+function(boxtree_export_only target version symbols)
+  set(map ${CMAKE_CURRENT_BINARY_DIR}/${target}.map)
+  file(CONFIGURE OUTPUT ${map} CONTENT [[
+@version@ {
+  global: @symbols@
+  local: *;
+};
+]] @ONLY)
+  set_property(TARGET ${target} PROPERTY LINK_DEPENDS ${map})
+  target_link_options(${target} PRIVATE -Wl,--version-script=${map})
+  if(NOT BOXTREE_SANITIZE) # whose functions are in the program
+    target_link_options(${target} PRIVATE -Wl,-z,defs)
+  endif()
+endfunction()
+
 # boxtree_precompile(TARGET HEADERS...): parses the headers of other projects once for all sources of a target. A
 # source must still include what it uses; builds without it (presets scalar and asan-ubsan) fail where one does
 # not. Not for targets with sources that have optimisations of their own (the runtime grew from 450 to 494 KB).

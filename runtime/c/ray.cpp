@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+// Rays through trees and scenes, in C.
+#include <algorithm>
+#include <array>
+#include <boxtree_c.h>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+#include <boxtree/boxtree.h>
+
+#include "runtime/c/call.h"
+#include "runtime/c/convert.h"
+#include "runtime/c/handle.h"
+#include "runtime/c/options.h"
+
+using namespace boxtree;
+using namespace boxtree::c;
+
+namespace {
+
+// Rays that are brought to C++ at a time: whole packets of closest_hits().
+constexpr std::size_t kRaysAtATime = 64;
+
+bxt_ray_hit hit_of(const RayHit& hit, bool is_hit, std::uint32_t instance) {
+  return {sizeof(bxt_ray_hit), is_hit, hit.t, to_c(hit.face, instance),
+          hit.triangle,        hit.u,  hit.v, to_c(hit.point),
+          to_c(hit.normal)};
+}
+
+// The hits of what is queried.
+template <class Handle>
+struct HitOf;
+template <>
+struct HitOf<bxt_tree> {
+  using Type = RayHit;
+};
+#if BOXTREE_HAS_SCENE_QUERIES
+template <>
+struct HitOf<bxt_scene> {
+  using Type = SceneRayHit;
+};
+#endif
+
+template <class Hit>
+bxt_ray_hit hit_of(const QueryResult<Hit>& result) {
+  return hit_of(*result, result.has_value(), instance_of(*result));
+}
+
+template <class Handle, class Query>
+bxt_status one_hit(const Handle* subject, const bxt_ray* ray, const bxt_face_options* options,
+                   bxt_ray_hit* hit, bxt_error* error, Query query) {
+  if (const char* name = first_null("tree or scene", subject, "ray", ray, "hit", hit))
+    return refuse(error, name);
+  if (!has_size(hit)) return refuse(error, "hit: struct_size");
+  return guarded(error, [&] {
+    return with_face_options<Handle>(options, error, [&](const auto& read) {
+      const auto result = query(subject->inside, to_cpp(*ray), read);
+      if (result.ok()) write_struct(hit, hit_of(result));
+      return finish(result, error);
+    });
+  });
+}
+
+template <class Handle>
+bxt_status every_hit(const Handle* subject, const bxt_ray* ray, bxt_ray_visitor visitor,
+                     void* context, const bxt_face_options* options, bxt_error* error) {
+  if (const char* name = first_null("tree or scene", subject, "ray", ray, "visitor", visitor)) {
+    return refuse(error, name);
+  }
+  return guarded(error, [&] {
+    return with_face_options<Handle>(options, error, [&](const auto& read) {
+      const auto visit = [&](const auto& hit) {
+        const bxt_ray_hit shown = hit_of(hit, true, instance_of(hit));
+        return visitor(context, &shown);
+      };
+      return finish(all_hits(subject->inside, to_cpp(*ray), visit, read), error);
+    });
+  });
+}
+
+// nearest_hits() needs room for hits of C++, which nobody else has: it works in the caller's, and
+// each hit is then translated in its place, or behind it where the caller's structs are longer.
+template <class Handle>
+bxt_status first_hits(const Handle* subject, const bxt_ray* ray, bxt_ray_hit* hits,
+                      std::size_t capacity, std::size_t* count, const bxt_face_options* options,
+                      bxt_error* error) {
+  using Hit = typename HitOf<Handle>::Type;
+  static_assert(sizeof(Hit) <= sizeof(bxt_ray_hit) && alignof(Hit) <= alignof(bxt_ray_hit));
+  if (const char* name = first_null("tree or scene", subject, "ray", ray, "count", count))
+    return refuse(error, name);
+  if (capacity > 0 && hits == nullptr) return refuse(error, "hits");
+  if (capacity > 0 && !has_size(hits)) return refuse(error, "hits: struct_size");
+  return guarded(error, [&] {
+    return with_face_options<Handle>(options, error, [&](const auto& read) {
+      const std::uint32_t size = capacity > 0 ? stated_size(hits) : 0;
+      auto* const bytes = reinterpret_cast<std::byte*>(hits);
+      const auto place = [&](std::size_t i) {
+        return reinterpret_cast<bxt_ray_hit*>(bytes + i * size);
+      };
+      auto* const room = reinterpret_cast<Hit*>(bytes);
+      std::uninitialized_default_construct_n(room, capacity);
+      const Result<std::size_t> found =
+          nearest_hits(subject->inside, to_cpp(*ray), std::span<Hit>(room, capacity), read);
+      for (std::size_t i = capacity; i-- > 0;) {
+        const bxt_ray_hit hit = hit_of(room[i], found.ok() && i < *found, instance_of(room[i]));
+        write_struct(place(i), hit);
+        place(i)->struct_size = size;
+      }
+      if (found) *count = *found;
+      return finish(found, error);
+    });
+  });
+}
+
+template <class Handle, class One, class Many>
+bxt_status many_hits(const Handle* subject, const bxt_ray* rays, std::size_t count,
+                     bxt_ray_hit* hits, bxt_status* statuses, const bxt_face_options* options,
+                     bxt_error* error, One one, Many many) {
+  if (subject == nullptr) return refuse(error, "tree or scene");
+  if (count == 0) return BXT_OK;
+  if (const char* name = first_null("rays", rays, "hits", hits)) return refuse(error, name);
+  if (!has_size(hits)) return refuse(error, "hits: struct_size");
+  return guarded(error, [&] {
+    return with_face_options<Handle>(options, error, [&](const auto& read) {
+      const std::uint32_t size = stated_size(hits);
+      bxt_status first_error = BXT_OK;
+      const auto answer = [&](std::size_t i, const auto& result) {
+        bxt_ray_hit* const hit = element(hits, i);
+        write_struct(hit, hit_of(result));
+        hit->struct_size = size;
+        const auto status = static_cast<bxt_status>(result.code());
+        if (statuses != nullptr) statuses[i] = status;
+        if (status != BXT_OK && first_error == BXT_OK) first_error = finish(result, error);
+      };
+      if constexpr (std::is_same_v<Handle, bxt_tree>) {
+        std::array<Ray, kRaysAtATime> chunk;
+        std::array<RayResult, kRaysAtATime> results;
+        for (std::size_t begin = 0; begin < count; begin += kRaysAtATime) {
+          const std::size_t n = std::min(kRaysAtATime, count - begin);
+          for (std::size_t i = 0; i < n; ++i) chunk[i] = to_cpp(rays[begin + i]);
+          // Their numbers are the same, so it returns kOk.
+          static_cast<void>(many(subject->inside, std::span<const Ray>(chunk).first(n),
+                                 std::span<RayResult>(results).first(n), read));
+          for (std::size_t i = 0; i < n; ++i) answer(begin + i, results[i]);
+        }
+      } else {
+        // A scene answers rays one by one, be there a batch or not.
+        for (std::size_t i = 0; i < count; ++i)
+          answer(i, one(subject->inside, to_cpp(rays[i]), read));
+      }
+      return first_error;
+    });
+  });
+}
+
+// The overloads of a query as one object.
+constexpr auto kClosestHit = [](const auto& inside, const Ray& ray, const auto& options) {
+  return closest_hit(inside, ray, options);
+};
+constexpr auto kAnyHit = [](const auto& inside, const Ray& ray, const auto& options) {
+  return any_hit(inside, ray, options);
+};
+constexpr auto kClosestHits = [](const Tree& tree, auto rays, auto results, const auto& options) {
+  return closest_hits(tree, rays, results, options);
+};
+constexpr auto kAnyHits = [](const Tree& tree, auto rays, auto results, const auto& options) {
+  return any_hits(tree, rays, results, options);
+};
+
+}  // namespace
+
+bxt_status bxt_tree_closest_hit(const bxt_tree* tree, const bxt_ray* ray,
+                                const bxt_face_options* options, bxt_ray_hit* hit,
+                                bxt_error* error) {
+  return one_hit(tree, ray, options, hit, error, kClosestHit);
+}
+
+bxt_status bxt_tree_any_hit(const bxt_tree* tree, const bxt_ray* ray,
+                            const bxt_face_options* options, bxt_ray_hit* hit, bxt_error* error) {
+  return one_hit(tree, ray, options, hit, error, kAnyHit);
+}
+
+bxt_status bxt_tree_all_hits(const bxt_tree* tree, const bxt_ray* ray, bxt_ray_visitor visitor,
+                             void* context, const bxt_face_options* options, bxt_error* error) {
+  return every_hit(tree, ray, visitor, context, options, error);
+}
+
+bxt_status bxt_tree_nearest_hits(const bxt_tree* tree, const bxt_ray* ray, bxt_ray_hit* hits,
+                                 size_t capacity, size_t* count, const bxt_face_options* options,
+                                 bxt_error* error) {
+  return first_hits(tree, ray, hits, capacity, count, options, error);
+}
+
+bxt_status bxt_tree_closest_hits(const bxt_tree* tree, const bxt_ray* rays, size_t count,
+                                 bxt_ray_hit* hits, bxt_status* statuses,
+                                 const bxt_face_options* options, bxt_error* error) {
+  return many_hits(tree, rays, count, hits, statuses, options, error, kClosestHit, kClosestHits);
+}
+
+bxt_status bxt_tree_any_hits(const bxt_tree* tree, const bxt_ray* rays, size_t count,
+                             bxt_ray_hit* hits, bxt_status* statuses,
+                             const bxt_face_options* options, bxt_error* error) {
+  return many_hits(tree, rays, count, hits, statuses, options, error, kAnyHit, kAnyHits);
+}
+
+#if BOXTREE_HAS_SCENE_QUERIES
+bxt_status bxt_scene_closest_hit(const bxt_scene* scene, const bxt_ray* ray,
+                                 const bxt_face_options* options, bxt_ray_hit* hit,
+                                 bxt_error* error) {
+  return one_hit(scene, ray, options, hit, error, kClosestHit);
+}
+
+bxt_status bxt_scene_any_hit(const bxt_scene* scene, const bxt_ray* ray,
+                             const bxt_face_options* options, bxt_ray_hit* hit, bxt_error* error) {
+  return one_hit(scene, ray, options, hit, error, kAnyHit);
+}
+
+bxt_status bxt_scene_all_hits(const bxt_scene* scene, const bxt_ray* ray, bxt_ray_visitor visitor,
+                              void* context, const bxt_face_options* options, bxt_error* error) {
+  return every_hit(scene, ray, visitor, context, options, error);
+}
+
+bxt_status bxt_scene_nearest_hits(const bxt_scene* scene, const bxt_ray* ray, bxt_ray_hit* hits,
+                                  size_t capacity, size_t* count, const bxt_face_options* options,
+                                  bxt_error* error) {
+  return first_hits(scene, ray, hits, capacity, count, options, error);
+}
+
+bxt_status bxt_scene_closest_hits(const bxt_scene* scene, const bxt_ray* rays, size_t count,
+                                  bxt_ray_hit* hits, bxt_status* statuses,
+                                  const bxt_face_options* options, bxt_error* error) {
+  return many_hits(scene, rays, count, hits, statuses, options, error, kClosestHit, kClosestHits);
+}
+
+bxt_status bxt_scene_any_hits(const bxt_scene* scene, const bxt_ray* rays, size_t count,
+                              bxt_ray_hit* hits, bxt_status* statuses,
+                              const bxt_face_options* options, bxt_error* error) {
+  return many_hits(scene, rays, count, hits, statuses, options, error, kAnyHit, kAnyHits);
+}
+#endif
