@@ -69,24 +69,32 @@ std::uint32_t stated_size(const T* given) noexcept {
   return size;
 }
 
-/// Whether a struct has a size that some version gave it. There is one version: none is shorter.
+/// Whether a struct, or the first one of an array, has a size that some version gave it. There is
+/// one version: none is shorter.
 template <class T>
 bool has_size(const T* given) noexcept {
   const std::uint32_t size = stated_size(given);
-  return size >= sizeof(T) && size <= sizeof(T) + kMostGrowth;
+  return size >= sizeof(T) && size <= sizeof(T) + kMostGrowth && size % alignof(T) == 0;
+}
+
+/// Reads element `i` of an array of structs, all of the size that the first one has, whatever the
+/// others say. False if members are set that this version does not know. Precondition:
+/// has_size(first).
+template <class T>
+[[nodiscard]] bool read_element(const T* first, std::size_t i, T& value) noexcept {
+  const std::uint32_t size = stated_size(first);
+  const unsigned char* const bytes = reinterpret_cast<const unsigned char*>(first) + i * size;
+  const bool knows_all =
+      std::all_of(bytes + sizeof(T), bytes + size, [](unsigned char byte) { return byte == 0; });
+  if (knows_all) std::memcpy(&value, bytes, sizeof(T));
+  return knows_all;
 }
 
 /// Reads a struct of the caller into `value`, which holds what stands for a null pointer. False if
 /// its size is none, or if members are set that this version does not know.
 template <class T>
 [[nodiscard]] bool read_struct(const T* given, T& value) noexcept {
-  if (given == nullptr) return true;
-  if (!has_size(given)) return false;
-  const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
-  const bool knows_all = std::all_of(bytes + sizeof(T), bytes + stated_size(given),
-                                     [](unsigned char byte) { return byte == 0; });
-  if (knows_all) std::memcpy(&value, given, sizeof(T));
-  return knows_all;
+  return given == nullptr || (has_size(given) && read_element(given, 0, value));
 }
 
 /// Writes all members but its size. Precondition: has_size(given).
@@ -97,12 +105,32 @@ void write_struct(T* given, const T& value) noexcept {
               reinterpret_cast<const std::byte*>(&value) + kBehindSize, sizeof(T) - kBehindSize);
 }
 
-/// Element `i` of an array of structs, all of the size that the first one has.
+/// An array of structs of the caller that are written, all of the size that the first one has.
 template <class T>
-T* element(T* first, std::size_t i) noexcept {
-  using Byte = std::conditional_t<std::is_const_v<T>, const std::byte, std::byte>;
-  return reinterpret_cast<T*>(reinterpret_cast<Byte*>(first) + i * stated_size(first));
-}
+class Elements {
+ public:
+  /// Precondition: has_size(first).
+  explicit Elements(T* first) noexcept
+      : bytes_(reinterpret_cast<std::byte*>(first)), size_(stated_size(first)) {}
+
+  [[nodiscard]] T& operator[](std::size_t i) const noexcept {
+    return *reinterpret_cast<T*>(bytes_ + i * size_);
+  }
+  /// Writes all members of element `i`.
+  void write(std::size_t i, const T& value) const noexcept {
+    write_struct(&(*this)[i], value);
+    (*this)[i].struct_size = size_;
+  }
+  /// Copies an element to the place of another one, with what lies behind its members.
+  void move(std::size_t from, std::size_t to) const noexcept {
+    std::memmove(bytes_ + to * size_, bytes_ + from * size_, size_);
+    (*this)[to].struct_size = size_;
+  }
+
+ private:
+  std::byte* bytes_;
+  std::uint32_t size_;
+};
 
 /// How many bytes of a UTF-8 text fit into `capacity`, without cutting a character in two.
 [[nodiscard]] std::size_t whole_characters(std::string_view text, std::size_t capacity) noexcept;

@@ -3,9 +3,6 @@
 #include <boxtree_c.h>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <span>
-#include <type_traits>
 
 #include <boxtree/boxtree.h>
 
@@ -14,6 +11,7 @@
 #include "runtime/c/handle.h"
 #include "runtime/c/options.h"
 #include "runtime/c/shape.h"
+#include "runtime/query/collide_query.h"
 
 using namespace boxtree;
 using namespace boxtree::c;
@@ -166,6 +164,26 @@ bxt_vec3 bxt_cast_hit_resolved_normal(const bxt_cast_hit* hit, const bxt_vec3* v
 
 bxt_vec3 bxt_contact_resolved_normal(const bxt_contact* contact, const bxt_vec3* velocity) {
   return resolve<Contact>(*contact, *velocity);
+}
+
+bxt_status bxt_merge_contacts(bxt_contact* contacts, size_t count, double distance, double cosine,
+                              size_t* kept, bxt_error* error) {
+  if (kept == nullptr) return refuse(error, "kept");
+  if (count > 0 && contacts == nullptr) return refuse(error, "contacts");
+  if (count > 0 && !has_size(contacts)) return refuse(error, "contacts: struct_size");
+  if (count == 0) {
+    *kept = 0;
+    return BXT_OK;
+  }
+  const Elements<bxt_contact> elements(contacts);
+  *kept = merge(
+      count, distance, cosine,
+      [&](std::size_t i) {
+        const bxt_contact& contact = elements[i];
+        return MergedContact{to_cpp(contact.point), to_cpp(contact.normal), contact.depth};
+      },
+      [&](std::size_t from, std::size_t to) { elements.move(from, to); });
+  return BXT_OK;
 }
 
 bxt_status bxt_scene_cast_closest(const bxt_scene* scene, const bxt_shape* shape,

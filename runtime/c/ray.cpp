@@ -4,7 +4,7 @@
 #include <array>
 #include <boxtree_c.h>
 #include <cstddef>
-#include <memory>
+#include <optional>
 #include <span>
 #include <type_traits>
 
@@ -14,6 +14,8 @@
 #include "runtime/c/convert.h"
 #include "runtime/c/handle.h"
 #include "runtime/c/options.h"
+#include "runtime/query/nearest_hits.h"
+#include "runtime/scene/nearest_scene_hits.h"
 
 using namespace boxtree;
 using namespace boxtree::c;
@@ -80,35 +82,57 @@ bxt_status every_hit(const Handle* subject, const bxt_ray* ray, bxt_ray_visitor 
   });
 }
 
-// nearest_hits() needs room for hits of C++, which nobody else has: it works in the caller's, and
-// each hit is then translated in its place, or behind it where the caller's structs are longer.
+// Room for hits in a caller's array, as HitRoom; read() answers what decides their order.
+template <class Hit>
+class ArrayRoom {
+ public:
+  ArrayRoom(bxt_ray_hit* hits, std::size_t size) noexcept : size_(size) {
+    if (size > 0) hits_.emplace(hits);
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] Hit read(std::size_t i) const noexcept {
+    const bxt_ray_hit& stored = (*hits_)[i];
+    Hit hit;
+    hit.t = stored.t;
+    hit.face = face_ref(stored.face);
+    hit.triangle = stored.triangle;
+    if constexpr (requires { hit.instance; }) hit.instance = stored.face.instance;
+    return hit;
+  }
+  void write(std::size_t i, const Hit& hit) const noexcept {
+    hits_->write(i, hit_of(hit, true, instance_of(hit)));
+  }
+  void move(std::size_t from, std::size_t to) const noexcept { hits_->write(to, (*hits_)[from]); }
+
+  /// Says of what no hit came for that it is none.
+  void clear_from(std::size_t begin) const noexcept {
+    for (std::size_t i = begin; i < size_; ++i) {
+      const Hit none;
+      hits_->write(i, hit_of(none, false, instance_of(none)));
+    }
+  }
+
+ private:
+  std::optional<Elements<bxt_ray_hit>> hits_;
+  std::size_t size_;
+};
+
 template <class Handle>
-bxt_status first_hits(const Handle* subject, const bxt_ray* ray, bxt_ray_hit* hits,
-                      std::size_t capacity, std::size_t* count, const bxt_face_options* options,
-                      bxt_error* error) {
+bxt_status nearest(const Handle* subject, const bxt_ray* ray, bxt_ray_hit* hits,
+                   std::size_t capacity, std::size_t* count, const bxt_face_options* options,
+                   bxt_error* error) {
   using Hit = typename HitOf<Handle>::Type;
-  static_assert(sizeof(Hit) <= sizeof(bxt_ray_hit) && alignof(Hit) <= alignof(bxt_ray_hit));
   if (const char* name = first_null("tree or scene", subject, "ray", ray, "count", count))
     return refuse(error, name);
   if (capacity > 0 && hits == nullptr) return refuse(error, "hits");
   if (capacity > 0 && !has_size(hits)) return refuse(error, "hits: struct_size");
   return guarded(error, [&] {
     return with_face_options<Handle>(options, error, [&](const auto& read) {
-      const std::uint32_t size = capacity > 0 ? stated_size(hits) : 0;
-      auto* const bytes = reinterpret_cast<std::byte*>(hits);
-      const auto place = [&](std::size_t i) {
-        return reinterpret_cast<bxt_ray_hit*>(bytes + i * size);
-      };
-      auto* const room = reinterpret_cast<Hit*>(bytes);
-      std::uninitialized_default_construct_n(room, capacity);
-      const Result<std::size_t> found =
-          nearest_hits(subject->inside, to_cpp(*ray), std::span<Hit>(room, capacity), read);
-      for (std::size_t i = capacity; i-- > 0;) {
-        const bxt_ray_hit hit = hit_of(room[i], found.ok() && i < *found, instance_of(room[i]));
-        write_struct(place(i), hit);
-        place(i)->struct_size = size;
-      }
+      const ArrayRoom<Hit> room(hits, capacity);
+      const Result<std::size_t> found = first_hits(subject->inside, to_cpp(*ray), room, read);
       if (found) *count = *found;
+      if (found) room.clear_from(*found);
       return finish(found, error);
     });
   });
@@ -124,12 +148,10 @@ bxt_status many_hits(const Handle* subject, const bxt_ray* rays, std::size_t cou
   if (!has_size(hits)) return refuse(error, "hits: struct_size");
   return guarded(error, [&] {
     return with_face_options<Handle>(options, error, [&](const auto& read) {
-      const std::uint32_t size = stated_size(hits);
+      const Elements<bxt_ray_hit> elements(hits);
       bxt_status first_error = BXT_OK;
       const auto answer = [&](std::size_t i, const auto& result) {
-        bxt_ray_hit* const hit = element(hits, i);
-        write_struct(hit, hit_of(result));
-        hit->struct_size = size;
+        elements.write(i, hit_of(result));
         const auto status = static_cast<bxt_status>(result.code());
         if (statuses != nullptr) statuses[i] = status;
         if (status != BXT_OK && first_error == BXT_OK) first_error = finish(result, error);
@@ -190,7 +212,7 @@ bxt_status bxt_tree_all_hits(const bxt_tree* tree, const bxt_ray* ray, bxt_ray_v
 bxt_status bxt_tree_nearest_hits(const bxt_tree* tree, const bxt_ray* ray, bxt_ray_hit* hits,
                                  size_t capacity, size_t* count, const bxt_face_options* options,
                                  bxt_error* error) {
-  return first_hits(tree, ray, hits, capacity, count, options, error);
+  return nearest(tree, ray, hits, capacity, count, options, error);
 }
 
 bxt_status bxt_tree_closest_hits(const bxt_tree* tree, const bxt_ray* rays, size_t count,
@@ -225,7 +247,7 @@ bxt_status bxt_scene_all_hits(const bxt_scene* scene, const bxt_ray* ray, bxt_ra
 bxt_status bxt_scene_nearest_hits(const bxt_scene* scene, const bxt_ray* ray, bxt_ray_hit* hits,
                                   size_t capacity, size_t* count, const bxt_face_options* options,
                                   bxt_error* error) {
-  return first_hits(scene, ray, hits, capacity, count, options, error);
+  return nearest(scene, ray, hits, capacity, count, options, error);
 }
 
 bxt_status bxt_scene_closest_hits(const bxt_scene* scene, const bxt_ray* rays, size_t count,

@@ -35,14 +35,20 @@ bxt_status bxt_scene_bind(const bxt_file* file, const bxt_scene_options* options
   if (!read_struct(options, read)) return refuse(error, "options: struct_size");
   if (!Allocation::read(read.allocator, allocation)) return refuse(error, "options: allocator");
   if (read.queries > BXT_ALL_QUERIES) return refuse(error, "options: queries");
-  if (read.mesh_count > 0 && read.meshes == nullptr) return refuse(error, "options: meshes");
+  if (read.mesh_count > 0 && (read.meshes == nullptr || !has_size(read.meshes))) {
+    return refuse(error, "options: meshes");
+  }
   if (read.moving_count > 0 && read.moving == nullptr) return refuse(error, "options: moving");
+  // No array is as long: one that is cannot be handed on.
+  if (read.moving_count > PTRDIFF_MAX / sizeof(uint32_t)) {
+    return refuse(error, "options: moving_count");
+  }
   return guarded(error, [&] {
     std::vector<SceneMeshArrays> meshes;
     for (std::size_t i = 0; i < read.mesh_count; ++i) {
       bxt_scene_mesh mesh = {};
       std::optional<MeshArrays> arrays;
-      if (!read_struct(element(read.meshes, i), mesh) || !read_mesh(mesh.mesh, arrays)) {
+      if (!read_element(read.meshes, i, mesh) || !read_mesh(mesh.mesh, arrays)) {
         return refuse(error, "options: meshes");
       }
       meshes.push_back({mesh.tree, *arrays});
@@ -71,7 +77,9 @@ bxt_status bxt_scene_assemble(const bxt_tree* const* trees, size_t tree_count,
   if (scene == nullptr) return refuse(error, "scene");
   if (tree_count > 0 && trees == nullptr) return refuse(error, "trees");
   if (instance_count > 0 && instances == nullptr) return refuse(error, "instances");
+  if (instance_count > 0 && !has_size(instances)) return refuse(error, "instances: struct_size");
   if (layer_count > 0 && layers == nullptr) return refuse(error, "layers");
+  if (layer_count > 0 && !has_size(layers)) return refuse(error, "layers: struct_size");
   if (!Allocation::read(allocator, allocation)) return refuse(error, "allocator");
   return guarded(error, [&] {
     std::vector<Tree> given_trees;
@@ -82,7 +90,7 @@ bxt_status bxt_scene_assemble(const bxt_tree* const* trees, size_t tree_count,
     std::vector<PlacedTree> placed;
     for (std::size_t i = 0; i < instance_count; ++i) {
       bxt_placed_tree read = {};
-      if (!read_struct(element(instances, i), read)) return refuse(error, "instances: struct_size");
+      if (!read_element(instances, i, read)) return refuse(error, "instances: struct_size");
       placed.push_back({.tree = read.tree,
                         .pose = to_cpp(&read.pose),
                         .layer = read.layer,
@@ -93,7 +101,7 @@ bxt_status bxt_scene_assemble(const bxt_tree* const* trees, size_t tree_count,
     std::vector<SceneLayer> given_layers;
     for (std::size_t i = 0; i < layer_count; ++i) {
       bxt_scene_layer read = {};
-      if (!read_struct(element(layers, i), read)) return refuse(error, "layers: struct_size");
+      if (!read_element(layers, i, read)) return refuse(error, "layers: struct_size");
       if (read.queries > BXT_ALL_QUERIES) return refuse(error, "layers: queries");
       if (read.reserved != 0) return refuse(error, "layers: reserved");
       given_layers.push_back({.name = text_of(read.name),

@@ -14,21 +14,25 @@
 //
 // Errors. Functions that can fail return BXT_OK or the code of an error. Their last parameter,
 // which may be NULL, then says more; where they succeed they leave it alone. What they would have
-// written elsewhere is untouched. That nothing was hit is no error.
+// written elsewhere is untouched, where a function does not say otherwise. That nothing was hit is
+// no error. A handle, an output or an input that is NULL though it is not said to be optional is
+// BXT_INVALID_QUERY; functions that return no bxt_status take no NULL but a buffer's.
 //
 // Structs. bxt_vec3, bxt_quaternion, bxt_pose, bxt_plane, bxt_ray, bxt_face and bxt_triangle are
 // what they are for good. All others begin with `struct_size`, the bytes that the caller's header
 // gives them: set it, as `bxt_ray_hit hit = {sizeof hit};` does, or take the struct from the
 // function bxt_default_...() of its name. Later versions add members at the end: a library reads
 // and writes no member that its caller does not know, and refuses (BXT_INVALID_QUERY) one it does
-// not know itself unless it is zero. Of an array of structs the first one's size is that of all.
+// not know itself unless it is zero. Of an array of structs the first one's size is that of all;
+// the others need not set it. Arrays that are written have it in all of them.
 //
 // Memory. Handles come from functions with "open", "bind", "assemble" or "copy" in their names and
-// are given back, once, to the one that is named there; NULL is given back for nothing. What they
-// allocate comes from the bxt_allocator they are given, if any. Queries allocate nothing. Texts are
-// UTF-8; functions that return a text copy as much of it as fits into `buffer`, with a 0 at the
-// end, and return its whole length without this 0, as snprintf does: with NULL and 0 the length
-// alone.
+// are given back, once, to the one that is named there; NULL is given back for nothing. The memory
+// of a handle comes from the bxt_allocator that is given, if any, or else from operator new; what
+// it owns, a copied file and the instances of a scene, from operator new always. Queries allocate
+// nothing. Texts are UTF-8; functions that return a text copy as much of it as fits into `buffer`,
+// with a 0 at the end, and return its whole length without this 0, as snprintf does: with NULL and
+// 0 the length alone. A text that is cut ends with a whole character.
 //
 // Callbacks are a function and a `context`, which is handed through. They are called on the thread
 // of the query, before it returns, and must return: no longjmp, no exception. A callback may make
@@ -291,12 +295,12 @@ static inline bxt_pose bxt_translation(double x, double y, double z) {
 
 // ---- Memory ----------------------------------------------------------------------------------
 
-/// Where a handle allocates. Both functions may be called whenever a function takes the handle
-/// without const, and by the one that makes it; the struct itself is copied.
+/// Where the memory of a handle comes from: `allocate` is called once by the function that makes
+/// it, `release` by the one that takes it back. The struct itself is copied.
 typedef struct bxt_allocator {
   uint32_t struct_size;  ///< sizeof(bxt_allocator).
   void* context;         ///< Handed to both.
-  /// Memory of at least `size` bytes, a multiple of `alignment` (a power of two), or NULL, which
+  /// Memory of at least `size` bytes at a multiple of `alignment` (a power of two), or NULL, which
   /// the library answers with BXT_OUT_OF_MEMORY.
   void* (*allocate)(void* context, size_t size, size_t alignment);
   /// Takes back what `allocate` gave for the same size and alignment.
@@ -500,8 +504,8 @@ static inline bxt_face_options bxt_default_face_options(void) {
   return options;
 }
 
-/// How near to the truth an answer has to be, and what it may cost: [lower, upper] is near enough
-/// if upper <= lower * (1 + relative_error) or upper <= lower + absolute_error. NULL: the default.
+/// How near to the truth an answer has to be, and what it may cost: [lower, upper] has converged if
+/// upper <= lower * (1 + relative_error) or upper <= lower + absolute_error. NULL: the default.
 typedef struct bxt_approximation {
   uint32_t struct_size;   ///< sizeof(bxt_approximation).
   uint32_t reserved;      ///< 0
@@ -553,7 +557,9 @@ typedef double (*bxt_ray_visitor)(void* context, const bxt_ray_hit* hit);
 BXT_API bxt_status bxt_tree_all_hits(const bxt_tree* tree, const bxt_ray* ray,
                                      bxt_ray_visitor visitor, void* context,
                                      const bxt_face_options* options, bxt_error* error);
-/// The first hits in the order of t, as many as there is room for. `count` receives how many.
+/// The first hits in the order of t, then of ids, as many as there is room for. `count` receives
+/// how many; those behind them are misses. Takes time proportional to the room for each hit that is
+/// met. It works in `hits`: where it fails they hold some of the hits.
 BXT_API bxt_status bxt_tree_nearest_hits(const bxt_tree* tree, const bxt_ray* ray,
                                          bxt_ray_hit* hits, size_t capacity, size_t* count,
                                          const bxt_face_options* options, bxt_error* error);
@@ -561,7 +567,8 @@ BXT_API bxt_status bxt_tree_nearest_hits(const bxt_tree* tree, const bxt_ray* ra
 /// The closest hit of each of `count` rays, to the bit what bxt_tree_closest_hit() says of it, in
 /// less time, the more so the nearer consecutive rays are to each other. An error of a ray makes it
 /// a miss; `statuses`, which may be NULL, receives each ray's own, and the first one is returned:
-/// all rays are answered. Less than 160 KB of stack.
+/// all rays are answered. Where another argument is not valid nothing is written. Less than 160 KB
+/// of stack.
 BXT_API bxt_status bxt_tree_closest_hits(const bxt_tree* tree, const bxt_ray* rays, size_t count,
                                          bxt_ray_hit* hits, bxt_status* statuses,
                                          const bxt_face_options* options, bxt_error* error);
@@ -733,7 +740,7 @@ BXT_API bxt_vec3 bxt_contact_resolved_normal(const bxt_contact* contact, const b
 /// Of contacts of one shape keeps one of those that neighbouring triangles report of the same
 /// point: within `distance` of each other, with normals whose cosine is at least `cosine` (0.999,
 /// say); the deepest one. Moves them to the front, in their order, and writes how many there are.
-/// Quadratic. Error: BXT_INVALID_QUERY (sizes).
+/// Quadratic.
 BXT_API bxt_status bxt_merge_contacts(bxt_contact* contacts, size_t count, double distance,
                                       double cosine, size_t* kept, bxt_error* error);
 
@@ -983,8 +990,7 @@ BXT_API bxt_status bxt_scene_all_hits(const bxt_scene* scene, const bxt_ray* ray
 BXT_API bxt_status bxt_scene_nearest_hits(const bxt_scene* scene, const bxt_ray* ray,
                                           bxt_ray_hit* hits, size_t capacity, size_t* count,
                                           const bxt_face_options* options, bxt_error* error);
-/// As bxt_tree_closest_hits(), in the time of one by one; of `options` it takes layers and nodes
-/// alone, and refuses others.
+/// As bxt_tree_closest_hits(), in the time of one by one.
 BXT_API bxt_status bxt_scene_closest_hits(const bxt_scene* scene, const bxt_ray* rays, size_t count,
                                           bxt_ray_hit* hits, bxt_status* statuses,
                                           const bxt_face_options* options, bxt_error* error);

@@ -39,24 +39,45 @@ Result<Visit> visit_touched(const BoundTree& tree, const CastQuery::Path& path,
 [[nodiscard]] Contact contact_of(const CastQuery& query, const CastCandidate& found,
                                  const Frame& frame) noexcept;
 
-/// merge_contacts() for contacts of any kind.
-template <class AnyContact>
-[[nodiscard]] std::size_t merge(std::span<AnyContact> contacts, double distance, double cosine) {
-  const auto is_same = [&](const Contact& a, const Contact& b) {
+/// What merge_contacts() looks at.
+struct MergedContact {
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal;
+  double depth;
+};
+
+/// merge_contacts() for `count` contacts of any kind: `read(i)` returns the MergedContact of one,
+/// `move(from, to)` copies one to the place of another.
+template <class Read, class Move>
+[[nodiscard]] std::size_t merge(std::size_t count, double distance, double cosine, const Read& read,
+                                const Move& move) {
+  const auto is_same = [&](const MergedContact& a, const MergedContact& b) {
     const Eigen::Vector3d between = a.point - b.point;
     return std::sqrt(squared_length(between)) <= distance && dot(a.normal, b.normal) >= cosine;
   };
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const MergedContact next = read(i);
     std::size_t same = 0;
-    while (same < kept && !is_same(contacts[same], contacts[i])) ++same;
+    while (same < kept && !is_same(read(same), next)) ++same;
     if (same == kept) {
-      contacts[kept++] = contacts[i];
-    } else if (contacts[i].depth > contacts[same].depth) {
-      contacts[same] = contacts[i];
+      move(i, kept++);
+    } else if (next.depth > read(same).depth) {
+      move(i, same);
     }
   }
   return kept;
+}
+
+/// The same for those of trees and of scenes.
+template <class AnyContact>
+[[nodiscard]] std::size_t merge(std::span<AnyContact> contacts, double distance, double cosine) {
+  return merge(
+      contacts.size(), distance, cosine,
+      [&](std::size_t i) {
+        return MergedContact{contacts[i].point, contacts[i].normal, contacts[i].depth};
+      },
+      [&](std::size_t from, std::size_t to) { contacts[to] = contacts[from]; });
 }
 
 /// Tells the second triangle of a quad that was visited already from others, leaf by leaf.

@@ -127,14 +127,14 @@ Result<Visit> all_hits(const Tree& queried, const Ray& ray, RayVisitor visitor,
   return wishes.faces.stopped ? Visit::kStopped : Visit::kComplete;
 }
 
+bool comes_first(const Tree& tree, const RayHit& a, const RayHit& b) noexcept {
+  if (a.t != b.t) return a.t < b.t;
+  return comes_before(BoundTree::of(tree), a.face, a.triangle, b.face, b.triangle);
+}
+
 Result<std::size_t> nearest_hits(const Tree& tree, const Ray& ray, std::span<RayHit> hits,
                                  const FaceOptions& options) {
-  return first_hits(
-      hits, ray.t_max, [&](const auto& visitor) { return all_hits(tree, ray, visitor, options); },
-      [&](const RayHit& a, const RayHit& b) {
-        if (a.t != b.t) return a.t < b.t;
-        return comes_before(BoundTree::of(tree), a.face, a.triangle, b.face, b.triangle);
-      });
+  return first_hits(tree, ray, HitRoom(hits), options);
 }
 
 }  // namespace boxtree

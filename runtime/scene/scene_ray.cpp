@@ -9,8 +9,8 @@
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/normal.h"
 #include "runtime/query/invalid_query.h"
-#include "runtime/query/nearest_hits.h"
 #include "runtime/query/ray_query.h"
+#include "runtime/scene/nearest_scene_hits.h"
 #include "runtime/scene/scene_line.h"
 #include "runtime/scene/scene_walk.h"
 
@@ -200,19 +200,18 @@ Result<Visit> all_hits(const Scene& queried, const Ray& ray, SceneRayVisitor vis
   return outcome_of(visit_nearest_instances(scene, query), query);
 }
 
-Result<std::size_t> nearest_hits(const Scene& queried, const Ray& ray, std::span<SceneRayHit> hits,
-                                 const SceneFaceOptions& options) {
+bool comes_first(const Scene& queried, const SceneRayHit& a, const SceneRayHit& b) noexcept {
   const BoundScene& scene = BoundScene::of(queried);
-  const auto id_of = [&](const SceneRayHit& hit) { return scene.record_of(hit.instance)->id; };
-  return first_hits(
-      hits, ray.t_max,
-      [&](const auto& visitor) { return all_hits(queried, ray, visitor, options); },
-      [&](const SceneRayHit& a, const SceneRayHit& b) {
-        if (a.t != b.t) return a.t < b.t;
-        if (a.instance != b.instance) return id_of(a) < id_of(b);
-        const BoundTree& tree = BoundTree::of(scene.trees()[scene.record_of(a.instance)->tree]);
-        return comes_before(tree, a.face, a.triangle, b.face, b.triangle);
-      });
+  if (a.t != b.t) return a.t < b.t;
+  if (a.instance != b.instance) {
+    return scene.record_of(a.instance)->id < scene.record_of(b.instance)->id;
+  }
+  return comes_first(scene.trees()[scene.record_of(a.instance)->tree], a, b);
+}
+
+Result<std::size_t> nearest_hits(const Scene& scene, const Ray& ray, std::span<SceneRayHit> hits,
+                                 const SceneFaceOptions& options) {
+  return first_hits(scene, ray, HitRoom(hits), options);
 }
 
 }  // namespace boxtree

@@ -14,7 +14,7 @@ import sys
 # Each folder may include itself and those before it. "." is what lies in the part's own folder.
 ORDER = {
     "format": ["."],
-    "runtime": ["file", "primitive", "tree", "walk", "query", "scene", "paper", "blob"],
+    "runtime": ["file", "primitive", "tree", "walk", "query", "scene", "c", "paper", "blob"],
     "cooker": ["text", "system", "import", "quantise", "build", "encode", "proof", "choose", "write",
                "scene", ".", "reorder", "shell", "export", "report", "cli"],
 }
@@ -32,6 +32,9 @@ SLOW_HEADERS = {"CLI/": ("cooker/cli/command_app.h",),
 PRINTS = ("iostream", "cstdio", "stdio.h", "print")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 PUBLIC = "boxtree/"
+# The C interface, and what of C99 it may include.
+C_HEADER = "boxtree_c.h"
+OF_C99 = ("math.h", "stdbool.h", "stddef.h", "stdint.h")
 # What format shares with applications, in format/include.
 OF_FORMAT = ("boxtree/error.h", "boxtree/export.h", "boxtree/kinds.h")
 
@@ -45,6 +48,10 @@ def folder_of(path):
 def fault_of(source, folder, name, quoted):
     """Why a source in that folder must not include that name; None if it may."""
     part = source.split("/")[0]
+    if source == "runtime/include/" + C_HEADER:
+        return None if name in OF_C99 else "the C interface includes C99 alone"
+    if name == C_HEADER:
+        return None if source.startswith("runtime/c/") else "only runtime/c knows the C interface"
     if name.startswith(PUBLIC):
         if part == "format" and name not in OF_FORMAT:
             return "format does not depend on the runtime"

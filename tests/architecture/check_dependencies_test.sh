@@ -31,6 +31,8 @@ refused runtime/query/bad.h '"runtime/scene/bound_scene.h"' 'runtime/query comes
 refused runtime/include/boxtree/bad.h '"runtime/tree/bound_tree.h"' \
   'a public header includes nothing private'
 refused runtime/include/boxtree/bad.h '<format/codec.h>' 'a public header includes nothing private'
+refused runtime/include/boxtree_c.h '<boxtree/ray.h>' 'the C interface includes C99 alone'
+refused runtime/query/bad.h '<boxtree_c.h>' 'only runtime/c knows the C interface'
 refused runtime/query/bad.h '"runtime/wide/ray.h"' \
   "runtime/wide is missing in the order of runtime's folders"
 refused runtime/query/bad.h '<runtime/walk/work.h>' \
