@@ -1,6 +1,7 @@
-# Installation, for find_package(boxtree CONFIG) and for pkg-config, in three components of install rules:
-# boxtree_runtime (the shared library, if there is one), boxtree_development (headers, archives and what
-# finds them) and boxtree_program (the command line, its man pages and completions).
+# Installation, for find_package(boxtree CONFIG) and for pkg-config, in components of install rules:
+# boxtree_runtime (the shared library of the C interface), boxtree_cpp_runtime (that of the C++ interface, if
+# there is one), boxtree_development (headers, archives and what finds them) and boxtree_program (the command
+# line, its man pages and completions).
 # boxtreeConfig.cmake.in lists the components of find_package.
 include(CMakePackageConfigHelpers)
 
@@ -23,8 +24,21 @@ else()
 endif()
 install(TARGETS ${targets} EXPORT boxtreeTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT boxtree_development
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT boxtree_runtime
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT boxtree_cpp_runtime
                                                     NAMELINK_COMPONENT boxtree_development)
+# In a file of its own, which needs nothing else to be found.
+set(BOXTREE_HAS_C OFF)
+if(TARGET boxtree_c)
+  set(BOXTREE_HAS_C ON)
+  install(TARGETS boxtree_c boxtree_c_static EXPORT boxtreeCTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT boxtree_development
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT boxtree_runtime
+                                                      NAMELINK_COMPONENT boxtree_development)
+  install(EXPORT boxtreeCTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR}
+          COMPONENT boxtree_development)
+  install(FILES ${PROJECT_SOURCE_DIR}/runtime/include/boxtree_c.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+          COMPONENT boxtree_development)
+endif()
 install(EXPORT boxtreeTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR}
         COMPONENT boxtree_development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/format/include/boxtree/ ${PROJECT_SOURCE_DIR}/runtime/include/boxtree/
@@ -70,7 +84,8 @@ install(FILES ${BOXTREE_GENERATED_CONFIG_DIR}/boxtreeConfig.cmake
               ${PROJECT_SOURCE_DIR}/cmake/BoxtreeCookedAssets.cmake
         DESTINATION ${BOXTREE_CONFIG_DIR} COMPONENT boxtree_development)
 
-# boxtree_install_pkg_config(NAME DESCRIPTION REQUIRES LIBS): NAME.pc, which finds all from where it lies.
+# boxtree_install_pkg_config(NAME DESCRIPTION REQUIRES LIBS [LIBS_PRIVATE]): NAME.pc, which finds all from where
+# it lies. LIBS_PRIVATE is what `pkg-config --static` adds.
 function(boxtree_install_pkg_config name description requires libs)
   set(PC_PREFIX ${CMAKE_INSTALL_PREFIX})
   if(NOT IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
@@ -85,6 +100,11 @@ function(boxtree_install_pkg_config name description requires libs)
   set(PC_DESCRIPTION ${description})
   set(PC_REQUIRES ${requires})
   set(PC_LIBS ${libs})
+  set(PC_LIBS_PRIVATE "${ARGN}")
+  set(PC_CFLAGS " -ffp-contract=off")
+  if(name STREQUAL boxtree_c) # nothing of it is compiled with the program
+    set(PC_CFLAGS "")
+  endif()
   configure_file(${PROJECT_SOURCE_DIR}/cmake/boxtree.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
           COMPONENT boxtree_development)
@@ -93,7 +113,7 @@ endfunction()
 # Archives are linked with all that they need, so nothing of it is "private". The shared library brings
 # along what it needs.
 set(runtime_requires "eigen3 >= 3.4")
-set(runtime_libs "-lboxtree")
+set(runtime_libs "-lboxtree_cpp")
 set(paper_libs "")
 set(blob_requires "boxtree = ${PROJECT_VERSION}")
 set(blob_libs "")
@@ -115,6 +135,13 @@ endif()
 if(BOXTREE_BLOB)
   boxtree_install_pkg_config(boxtree-blob "Collision trees in files that are compressed whole"
                              "${blob_requires}" "${blob_libs}")
+endif()
+
+if(BOXTREE_HAS_C)
+  list(TRANSFORM BOXTREE_C_STATIC_LIBRARIES PREPEND "-l" OUTPUT_VARIABLE private_libs)
+  list(JOIN private_libs " " private_libs)
+  boxtree_install_pkg_config(boxtree_c "Queries on collision trees in mapped files, in C" "" "-lboxtree"
+                             "${private_libs}")
 endif()
 
 if(PROJECT_IS_TOP_LEVEL)

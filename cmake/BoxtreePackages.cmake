@@ -1,6 +1,6 @@
-# Debian packages: `cpack` in the build directory makes libboxtree0.1 (of a build with BUILD_SHARED_LIBS
-# alone), libboxtree-dev and, with the cooker, boxtree. To have libraries where Debian has them, configure
-# with CMAKE_INSTALL_PREFIX=/usr.
+# Debian packages: `cpack` in the build directory makes libboxtree1 (the C interface), libboxtree-cpp0.1 (of a
+# build with BUILD_SHARED_LIBS alone), libboxtree-dev and, with the cooker, boxtree. To have libraries where
+# Debian has them, configure with CMAKE_INSTALL_PREFIX=/usr.
 set(soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(version_of_build "(= ${PROJECT_VERSION})")
 
@@ -43,14 +43,23 @@ endmacro()
 
 set(CPACK_COMPONENTS_ALL)
 set(needed "libeigen3-dev (>= 3.4)")
-if(BUILD_SHARED_LIBS)
-  boxtree_add_package(boxtree_runtime libboxtree${soversion} libs ""
-"queries on collision trees in mapped files (shared library)
+file(WRITE ${PROJECT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
+if(BOXTREE_HAS_C)
+  get_target_property(c_soversion boxtree_c SOVERSION)
+  boxtree_add_package(boxtree_runtime libboxtree${c_soversion} libs ""
+"queries on collision trees in mapped files (shared library for C)
 Maps .bxt files, which boxtree cooks from meshes, and answers ray, box, sphere,
 closest-point, contact and distance queries straight from their bytes.")
-  file(WRITE ${PROJECT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
   set(CPACK_DEBIAN_BOXTREE_RUNTIME_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
-  string(PREPEND needed "libboxtree${soversion} ${version_of_build}, ")
+  string(PREPEND needed "libboxtree${c_soversion} ${version_of_build}, ")
+endif()
+if(BUILD_SHARED_LIBS)
+  boxtree_add_package(boxtree_cpp_runtime libboxtree-cpp${soversion} libs ""
+"queries on collision trees in mapped files (shared library for C++)
+Maps .bxt files, which boxtree cooks from meshes, and answers ray, box, sphere,
+closest-point, contact and distance queries straight from their bytes.")
+  set(CPACK_DEBIAN_BOXTREE_CPP_RUNTIME_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
+  string(PREPEND needed "libboxtree-cpp${soversion} ${version_of_build}, ")
 else()
   if(BOXTREE_HIGHWAY)
     string(APPEND needed ", pkg-config, libhwy-dev")

@@ -51,6 +51,10 @@ CODE
 # shellcheck disable=SC2016 # expanded there
 run bash -c 'g++ -std=c++20 /plain.cpp -o /plain $(pkg-config --cflags --libs boxtree)'
 run /plain /level.bxt
+cp "$source/samples/c/first_ray.c" "$root/plain.c"
+# shellcheck disable=SC2016 # expanded there
+run bash -c 'gcc -std=c99 -pedantic-errors /plain.c -o /plain_c $(pkg-config --cflags --libs boxtree_c)'
+run /plain_c /level.bxt
 run apt-get purge -y -qq boxtree 'libboxtree*' >/dev/null
 left=$(find "$root/usr" "$root/etc" -path '*boxtree*' | head)
 [ -z "$left" ] || { echo "left behind: $left"; exit 1; }

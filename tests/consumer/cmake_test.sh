@@ -291,11 +291,11 @@ endif()"
   configured silent "$@"
   diff "$work/nothing" "$work/log" || fail "QUIET prints: $lines"
 }
-silent 1 'find_package(boxtree CONFIG QUIET COMPONENTS runtime paper blob cli wide8 ray)'
+silent 1 'find_package(boxtree CONFIG QUIET COMPONENTS runtime paper blob c cli wide8 ray)'
 silent 0 'find_package(boxtree CONFIG QUIET COMPONENTS wide5)'
 silent 0 'find_package(boxtree CONFIG QUIET)' -DCMAKE_PREFIX_PATH=/nothing
 
-refused 'wide5: there is no such component: there are runtime, paper, blob, cli, codecs (plain-f32, plain-f16, ' <<<'find_package(boxtree CONFIG REQUIRED COMPONENTS ray wide5)'
+refused 'wide5: there is no such component: there are runtime, paper, blob, c, cli, codecs (plain-f32, plain-f16, ' <<<'find_package(boxtree CONFIG REQUIRED COMPONENTS ray wide5)'
 # Versions 0.x are compatible within x.
 minor=${version%.*}
 for wanted in "$minor" "$version"; do
@@ -345,6 +345,7 @@ pair BOXTREE_QUERIES left it out of this build, which has ray
 wide8 BOXTREE_CODECS left it out of this build, which has wide4
 paper BOXTREE_CODECS left all codecs of the paper out of this build
 blob this build has BOXTREE_BLOB=OFF
+c the C interface answers every query, and this build has ray
 cli the command line is not installed here
 CASES
 
@@ -402,7 +403,7 @@ get_property(tests DIRECTORY PROPERTY TESTS)
 if(includes OR tests OR NOT "\${CMAKE_BUILD_TYPE}" STREQUAL "")
   message(SEND_ERROR "folders '\${includes}', tests '\${tests}', build type '\${CMAKE_BUILD_TYPE}'")
 endif()
-foreach(target boxtree::format boxtree::runtime boxtree::paper boxtree::blob boxtree::cli)
+foreach(target boxtree::format boxtree::runtime boxtree::paper boxtree::blob boxtree::c boxtree::c_static boxtree::cli)
   if(NOT TARGET \${target})
     message(SEND_ERROR "there is no \${target}")
   endif()

@@ -43,7 +43,8 @@ done
 # Nothing but public headers is installed, and each of them is enough by itself: no header that
 # decodes nodes, and none of the slow ones of the standard library.
 public=$(cd "$source" && ls runtime/include/boxtree format/include/boxtree | grep '\.h$' | sort)
-installed=$(cd "$work/prefix/include" && find . -type f | sed 's|^\./boxtree/||' | sort)
+[ "$(ls "$work/prefix/include")" = "$(printf 'boxtree\nboxtree_c.h')" ] || fail "installed: $(ls "$work/prefix/include")"
+installed=$(cd "$work/prefix/include/boxtree" && find . -type f | sed 's|^\./||' | sort)
 [ "$installed" = "$(printf '%s\nconfiguration.h\n' "$public" | sort)" ] ||
   fail "installed headers: $installed"
 eigen=$(sed -n 's/^Eigen3_DIR:[A-Z]*=//p' "$build/CMakeCache.txt")/../../../include/eigen3

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds the runtime as a shared library, without optimisation to save time, and installs it: what it
+# Builds the runtime as a shared library of the C++ interface, without optimisation to save time, and installs it: what it
 # exports is what the public headers declare, its soname changes with every version that is not compatible,
 # programs link it by CMake and by pkg-config, and cpack makes Debian packages of it.
 #   shared_test.sh SOURCE COMPILER BOXTREE
@@ -20,18 +20,18 @@ quiet cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compil
 quiet cmake --build "$work/build" -j2
 quiet cmake --install "$work/build"
 lib=$work/prefix/lib
-[ -f "$lib/libboxtree.so.$version" ] || fail "no libboxtree.so.$version"
-[ "$(readlink "$lib/libboxtree.so.$soversion")" = "libboxtree.so.$version" ] || fail "no link of the soname"
-[ "$(readlink "$lib/libboxtree.so")" = "libboxtree.so.$soversion" ] || fail "no link to link by"
-compgen -G "$lib/*.a" && fail "archives beside the shared library"
+[ -f "$lib/libboxtree_cpp.so.$version" ] || fail "no libboxtree_cpp.so.$version"
+[ "$(readlink "$lib/libboxtree_cpp.so.$soversion")" = "libboxtree_cpp.so.$version" ] || fail "no link of the soname"
+[ "$(readlink "$lib/libboxtree_cpp.so")" = "libboxtree_cpp.so.$soversion" ] || fail "no link to link by"
+compgen -G "$lib/libboxtree_*.a" && fail "archives beside the shared library"
 
-readelf -d "$lib/libboxtree.so" >"$work/dynamic"
-grep -q "soname: \[libboxtree.so.$soversion\]" "$work/dynamic" || fail "wrong soname: $(cat "$work/dynamic")"
+readelf -d "$lib/libboxtree_cpp.so" >"$work/dynamic"
+grep -q "soname: \[libboxtree_cpp.so.$soversion\]" "$work/dynamic" || fail "wrong soname: $(cat "$work/dynamic")"
 if grep -E 'RPATH|RUNPATH' "$work/dynamic"; then fail "has a path to search"; fi
 
 # Exported is what the public headers declare: their functions, and members of their
 # classes and structs, which mark functions one by one.
-nm -DC --defined-only --format=posix "$lib/libboxtree.so" | grep -v ' A ' >"$work/exported"
+nm -DC --defined-only --format=posix "$lib/libboxtree_cpp.so" | grep -v ' A ' >"$work/exported"
 [ -s "$work/exported" ] || fail "nothing is exported"
 sed -E 's/@@.*//; s/\(.*//' "$work/exported" | sort -u >"$work/names"
 sed 's|//.*||' "$work"/prefix/include/boxtree/*.h >"$work/headers"
@@ -75,7 +75,7 @@ read -ra flags <<<"$(pkg-config --cflags --libs boxtree boxtree-paper boxtree-bl
 quiet "$compiler" -std=c++20 -O0 "$source/tests/size/programs/whole.cpp" -o "$work/plain" "${flags[@]}"
 for program in "$work/user/build/user" "$work/plain"; do
   readelf -d "$program" >"$work/dynamic"
-  grep -q "NEEDED.*\[libboxtree.so.$soversion\]" "$work/dynamic" || fail "$program does not link libboxtree.so"
+  grep -q "NEEDED.*\[libboxtree_cpp.so.$soversion\]" "$work/dynamic" || fail "$program does not link libboxtree_cpp.so"
   for file in level blob; do
     LD_LIBRARY_PATH=$lib quiet "$program" "$work/$file.bxt"
   done
@@ -90,22 +90,31 @@ grep -q 'cli: the command line is not installed here' "$work/log" || fail "uncle
 (cd "$work/build" && quiet cpack)
 architecture=$(dpkg --print-architecture)
 packages=$(cd "$work/build" && printf '%s\n' *.deb | sort | paste -sd ' ')
-runtime=libboxtree${soversion}_${version}_$architecture.deb
+runtime=libboxtree-cpp${soversion}_${version}_$architecture.deb
+of_c=libboxtree1_${version}_$architecture.deb
 development=libboxtree-dev_${version}_$architecture.deb
-[ "$packages" = "$development $runtime" ] || fail "packages: $packages"
+[ "$packages" = "$runtime $development $of_c" ] || fail "packages: $packages"
 field() { dpkg-deb --field "$work/build/$1" "$2"; }
-[[ $(field "$development" Depends) == *"libboxtree$soversion (= $version)"* ]] ||
-  fail "$development depends on: $(field "$development" Depends)"
+for name in "libboxtree-cpp$soversion" libboxtree1; do
+  [[ $(field "$development" Depends) == *"$name (= $version)"* ]] ||
+    fail "$development depends on: $(field "$development" Depends)"
+done
 [[ $(field "$runtime" Depends) == *libzstd1* ]] || fail "$runtime depends on: $(field "$runtime" Depends)"
-for package in "$runtime" "$development"; do
+for package in "$runtime" "$of_c" "$development"; do
   [ "$(field "$package" Maintainer)" = "boxtree developers <boxtree@example.org>" ] || fail "$package: maintainer"
   quiet dpkg-deb --extract "$work/build/$package" "$work/root"
   name=${package%%_*}
   [ -f "$work/root/usr/share/doc/$name/copyright" ] || fail "$package has no copyright file"
 done
-[ "$(field "$runtime" Section) $(field "$development" Section)" = "libs libdevel" ] || fail "wrong sections"
-dpkg-deb --ctrl-tarfile "$work/build/$runtime" | tar -xO ./shlibs >"$work/shlibs"
-grep -q "^libboxtree $soversion libboxtree$soversion" "$work/shlibs" || fail "shlibs: $(cat "$work/shlibs")"
-dpkg-deb --ctrl-tarfile "$work/build/$runtime" | tar -xO ./triggers >"$work/triggers"
-grep -q ldconfig "$work/triggers" || fail "the linker is not told of the library"
+[ "$(field "$runtime" Section) $(field "$of_c" Section) $(field "$development" Section)" = "libs libs libdevel" ] ||
+  fail "wrong sections"
+control() { dpkg-deb --ctrl-tarfile "$work/build/$1" | tar -xO "./$2" >"$work/$2"; }
+control "$runtime" shlibs
+grep -q "^libboxtree_cpp $soversion libboxtree-cpp$soversion" "$work/shlibs" || fail "shlibs: $(cat "$work/shlibs")"
+control "$of_c" shlibs
+grep -q "^libboxtree 1 libboxtree1" "$work/shlibs" || fail "shlibs: $(cat "$work/shlibs")"
+for package in "$runtime" "$of_c"; do
+  control "$package" triggers
+  grep -q ldconfig "$work/triggers" || fail "the linker is not told of the library of $package"
+done
 echo "shared: as expected"
