@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The C interface: everything that boxtree's runtime does, for C99 and for whatever can call C.
 //
-//   bxt_file* file;
-//   bxt_tree* tree;
-//   if (bxt_file_open("rock.bxt", NULL, &file, NULL) == BXT_OK &&
-//       bxt_tree_bind(file, BXT_ONLY_TREE, NULL, &tree, NULL) == BXT_OK) {
-//     const bxt_ray ray = {{0, 0, 10}, {0, 0, -1}, 0, INFINITY};
-//     bxt_ray_hit hit = {sizeof hit};
-//     if (bxt_tree_closest_hit(tree, &ray, NULL, &hit, NULL) == BXT_OK && hit.is_hit) use(hit.t);
-//   }
+//     bxt_file* file;
+//     bxt_tree* tree;
+//     if (bxt_file_open("rock.bxt", NULL, &file, NULL) == BXT_OK &&
+//         bxt_tree_bind(file, BXT_ONLY_TREE, NULL, &tree, NULL) == BXT_OK) {
+//       const bxt_ray ray = {{0, 0, 10}, {0, 0, -1}, 0, INFINITY};
+//       bxt_ray_hit hit = {sizeof hit};
+//       if (bxt_tree_closest_hit(tree, &ray, NULL, &hit, NULL) == BXT_OK && hit.is_hit) use(hit.t);
+//     }
 //
 // What holds for all of it:
 //

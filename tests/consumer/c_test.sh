@@ -78,6 +78,23 @@ read -ra flags <<<"$(pkg-config --cflags --libs --static boxtree_c | sed 's/-lbo
 quiet "${compile[@]}" -o "$work/static" "${flags[@]}"
 answers "$work/static"
 
+# --- The guide ---
+# In an empty folder, what docs/GUIDE.md says, as printed.
+mkdir "$work/empty"
+sed -n '/^## Use it from C$/,/^## Move/p' "$source/docs/GUIDE.md" >"$work/section.md"
+section() { python3 "$source/tests/docs/blocks.py" "$work/section.md" "$1"; }
+section c >"$work/empty/ground.c"
+cp "$source/samples/meshes/level.obj" "$work/empty"
+section sh >"$work/commands.sh"
+[ "$(wc -l <"$work/commands.sh")" -eq 3 ] || fail "the guide has other commands: $(cat "$work/commands.sh")"
+(cd "$work/empty" && PATH=$work/moved/bin:$PATH LD_LIBRARY_PATH=$lib bash -eu "$work/commands.sh") >"$work/said" 2>&1 ||
+  fail "the guide's commands fail: $(cat "$work/said")"
+tail -1 "$work/said" | diff - <(section text) || fail "the guide's program prints something else (left)"
+{ echo 'cmake_minimum_required(VERSION 3.25)'; section cmake; } >"$work/empty/CMakeLists.txt"
+quiet cmake -S "$work/empty" -B "$work/empty/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_C_COMPILER=gcc
+quiet cmake --build "$work/empty/build"
+(cd "$work/empty" && ./build/ground) | diff - <(section text) || fail "the guide's CMake project prints something else (left)"
+
 for program in "$work/user/build/with_c" "$work/shared"; do
   needs "$program" | grep -qx "libboxtree.so.$major" || fail "$program does not need libboxtree.so.$major"
   if needs "$program" | grep -E 'stdc|hwy|libc\+\+'; then fail "$program needs C++"; fi
