@@ -4,6 +4,7 @@
 #include <boxtree/distance.h>
 
 #include "runtime/primitive/float_state.h"
+#include "runtime/primitive/vector3.h"
 #include "runtime/query/distance_walk.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/tree/root_box.h"
@@ -33,7 +34,8 @@ Distance answer(const Placed& placed, const Walk& walk, const Approximation& app
   if (is_within && nearest.upper < std::numeric_limits<double>::infinity()) {
     result.upper = placed.metric.length_above(nearest.upper);
     const Eigen::Vector3d origin =
-        placed.first_pose * placed.first.frame().to_object(nearest.origin);
+        product(placed.first_pose.linear(), placed.first.frame().to_object(nearest.origin)) +
+        placed.first_pose.translation();
     const auto to_world = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
       const int exponent = placed.metric.exponent();
       return {origin[0] + std::ldexp(point[0], exponent),

@@ -12,6 +12,7 @@
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/rounding.h"
+#include "runtime/primitive/vector3.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/scaled_length.h"
@@ -24,7 +25,7 @@ namespace boxtree {
 namespace {
 
 // Rounding of a sum of three squares and its root, upward.
-constexpr double kMore = 1 + 16 * kRoundoffF64;
+constexpr double kRoundedUp = 1 + 16 * kRoundoffF64;
 
 // The parameters of a watched pair walk, and why it ended.
 struct Watch {
@@ -44,7 +45,7 @@ struct Watcher {
 
   template <class S, class T>
   [[nodiscard]] bool stops(const Box<S>& first, const Box<T>& second) noexcept {
-    if (watch->metric.farthest(first, watch->pose.hull_in_first(second)) * kMore <
+    if (watch->metric.farthest(first, watch->pose.hull_in_first(second)) * kRoundedUp <
         watch->distance) {
       watch->why = Overlap::kUndecided;
       return true;
@@ -62,7 +63,9 @@ struct Watcher {
     const Eigen::Vector3d between = second.corner[0] - first.corner[0];
     const double error =
         watch->metric.image_error() * between.cwiseAbs().maxCoeff() + kLengthUnderflow;
-    if (!(watch->metric.to_world(between).norm() * kMore + error < watch->distance)) return false;
+    if (!(std::sqrt(squared_length(watch->metric.to_world(between))) * kRoundedUp + error <
+          watch->distance))
+      return false;
     watch->why = Overlap::kUndecided;
     return true;
   }
@@ -101,7 +104,7 @@ struct BoxSearch {
           std::max({0.0, box.low[axis] - node.low[k], node.high[k] - box.high[axis]});
       sum += outside * outside;
     }
-    return std::sqrt(sum) * kMore + kLengthUnderflow;
+    return std::sqrt(sum) * kRoundedUp + kLengthUnderflow;
   }
 
   // Whether the search is over before this node or leaf is visited.

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "runtime/primitive/rounding.h"
+#include "runtime/primitive/vector3.h"
 #include "runtime/query/scaled_length.h"
 #include "runtime/walk/traversal.h"
 
@@ -22,6 +23,11 @@ constexpr double kLess = 1 - 32 * kRoundoffF64;
 // A computed inverse with a larger residual is unusable.
 constexpr double kTooSingular = 0.25;
 
+// The largest sum of the magnitudes in a row.
+double largest_row_sum(const Eigen::Matrix3d& matrix) noexcept {
+  return product(matrix.cwiseAbs(), Eigen::Vector3d::Constant(1)).maxCoeff();
+}
+
 // An upper bound of the largest singular value of a matrix whose rows have length 1. With B = N
 // N^T, |N|^2 = |B| and |B|^4 = |B^4| <= the largest row sum of |B^4|, which for a symmetric 3x3
 // matrix is at most sqrt(3) |B^4|: less than 1.08 |N|, and |N| itself for orthogonal rows. B has
@@ -29,10 +35,9 @@ constexpr double kTooSingular = 0.25;
 // changes the norm by a factor of less than 1 + 16 u, raised to at most the fourth power: in all
 // below 1 + 256 u.
 double largest_stretch(const Eigen::Matrix3d& rows) noexcept {
-  const Eigen::Matrix3d b = rows * rows.transpose();
-  const Eigen::Matrix3d b2 = b * b;
-  const Eigen::Matrix3d b4 = b2 * b2;
-  const double largest_sum = b4.cwiseAbs().rowwise().sum().maxCoeff();
+  const Eigen::Matrix3d b = matrix_product(rows, rows.transpose());
+  const Eigen::Matrix3d b2 = matrix_product(b, b);
+  const double largest_sum = largest_row_sum(matrix_product(b2, b2));
   return std::sqrt(std::sqrt(std::sqrt(largest_sum))) * (1 + 256 * kRoundoffF64);
 }
 
@@ -40,7 +45,7 @@ double largest_stretch(const Eigen::Matrix3d& rows) noexcept {
 struct UnitRows {
   explicit UnitRows(const Eigen::Matrix3d& matrix) : rows(matrix) {
     for (Eigen::Index k = 0; k < 3; ++k) {
-      length[k] = matrix.row(k).norm();
+      length[k] = std::sqrt(squared_length(matrix.row(k).transpose()));
       rows.row(k) /= length[k];
     }
   }
@@ -54,10 +59,11 @@ double relative_residual(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y,
                          const Eigen::Vector3d& y_length, const Eigen::Matrix3d& g,
                          const Eigen::Vector3d& bound) noexcept {
   const Eigen::Matrix3d residual =
-      (y * g - a).cwiseAbs() + 8 * kRoundoffF64 * (y.cwiseAbs() * g.cwiseAbs() + a.cwiseAbs());
+      (matrix_product(y, g) - a).cwiseAbs() +
+      8 * kRoundoffF64 * (matrix_product(y.cwiseAbs(), g.cwiseAbs()) + a.cwiseAbs());
   double largest = 0;
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const double relative = residual.row(k).dot(bound) / y_length[k] * kMore;
+    const double relative = dot(residual.row(k).transpose(), bound) / y_length[k] * kMore;
     if (!(relative <= largest)) largest = relative;  // NaN is kept
   }
   return largest;
@@ -105,8 +111,9 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
   // The coordinates of z = x - y. From z = Y v - (Y G - I) z, with the residual measured in units
   // of |Y_k|: |z_k| <= |Y_k| |v| / (1 - r).
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d inverse = g.inverse();
-  const Eigen::Vector3d length = inverse.rowwise().norm();
+  Eigen::Matrix3d inverse;
+  static_cast<void>(invert_by_cofactors(g, inverse));
+  const Eigen::Vector3d length = UnitRows(inverse).length;
   const double residual = relative_residual(identity, inverse, length, g, length);
   metric.inverse_ = inverse;
   metric.residual_ = residual;
@@ -116,11 +123,11 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
     metric.coordinate_ = bound;
     metric.in_first_ = weights_of(identity, inverse, g, bound);
     const Eigen::Matrix3d& to_second = pose.to_second().linear;
-    metric.in_second_ = weights_of(to_second, to_second * inverse, g, bound);
+    metric.in_second_ = weights_of(to_second, matrix_product(to_second, inverse), g, bound);
   }
   // Images of the second tree's points are off by to_second_error; those of the first tree's, which
   // the hull of a box holds as they are computed, by gamma_4 of the terms.
-  const Eigen::Vector3d terms = pose.to_second().linear.cwiseAbs() * first.max_abs() +
+  const Eigen::Vector3d terms = product(pose.to_second().linear.cwiseAbs(), first.max_abs()) +
                                 pose.to_second().translation.cwiseAbs();
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
@@ -128,7 +135,7 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
         (pose.to_second_error()[axis] + 8 * kRoundoffF64 * terms[axis]) * kMore;
   }
 
-  metric.place_ = first.max_abs() + pose.to_first().linear.cwiseAbs() * second.max_abs() +
+  metric.place_ = first.max_abs() + product(pose.to_first().linear.cwiseAbs(), second.max_abs()) +
                   pose.to_first().translation.cwiseAbs();
 
   // |G z| = |(G C^-1) (C z)|, C the lengths of the columns.
@@ -139,7 +146,7 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
   metric.stretch_ = largest_stretch(columns.rows) * kMore;
   // A rounded difference, three products and two sums: gamma_4 of at most row sum times largest
   // magnitude in each of three components.
-  metric.image_error_ = 8 * kRoundoffF64 * g.cwiseAbs().rowwise().sum().maxCoeff();
+  metric.image_error_ = 8 * kRoundoffF64 * largest_row_sum(g);
   return metric;
 }
 
@@ -156,15 +163,16 @@ Direction WorldMetric::direction(const Eigen::Vector3d& along,
   Direction result;
   const double size = along.cwiseAbs().maxCoeff();
   if (!(size > 0) || !std::isfinite(size)) return result;
-  const Eigen::Vector3d n = linear_.transpose() * (along / size);
-  const double length =
-      ((inverse_.transpose() * n).norm() + residual_ * n.cwiseAbs().dot(coordinate_)) * kMore;
+  const Eigen::Vector3d n = product(linear_.transpose(), along / size);
+  const double length = (std::sqrt(squared_length(product(inverse_.transpose(), n))) +
+                         residual_ * dot(n.cwiseAbs(), coordinate_)) *
+                        kMore;
   const double scale = kLess / length;
   if (!std::isfinite(scale)) return result;
   result.first_ = n;
-  result.second_ = -(pose.to_first().linear.transpose() * n);
-  result.offset_ = n.dot(pose.to_first().translation);
-  result.error_ = 32 * kRoundoffF64 * n.cwiseAbs().dot(place_);
+  result.second_ = -product(pose.to_first().linear.transpose(), n);
+  result.offset_ = dot(n, pose.to_first().translation);
+  result.error_ = 32 * kRoundoffF64 * dot(n.cwiseAbs(), place_);
   result.scale_ = scale;
   return result;
 }

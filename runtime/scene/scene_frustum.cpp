@@ -3,6 +3,7 @@
 #include <boxtree/scene_frustum.h>
 
 #include "runtime/primitive/float_state.h"
+#include "runtime/primitive/vector3.h"
 #include "runtime/query/frustum_sides.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/scene/placed_box.h"
@@ -55,7 +56,8 @@ FrustumSides in_frame(const BoundScene& scene, const FrustumSides& units) noexce
       moved(units, {Eigen::Matrix3d::Identity(), scene.to_units(scene.frame().origin)},
             Eigen::Vector3d::Constant(largest));
   for (FrustumSide& side : sides.side) {
-    side.offset += side.normal.lpNorm<1>() * frame_error(scene, largest);
+    side.offset +=
+        dot(side.normal.cwiseAbs(), Eigen::Vector3d::Constant(1)) * frame_error(scene, largest);
   }
   return sides;
 }
