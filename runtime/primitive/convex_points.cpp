@@ -24,7 +24,7 @@ namespace {
 
 // The distance falls with each step, so that no triangle comes twice; after so many it is as good
 // as the bounds that are computed in any case say.
-constexpr int kMostSteps = 64;
+constexpr int kMostDirections = 64;
 
 using Differences = std::array<DifferencePoint, 3>;
 
@@ -41,8 +41,8 @@ std::uint32_t farthest_point(std::span<const Eigen::Vector3d> point,
   return best;
 }
 
-struct Search {
-  Search(std::span<const Eigen::Vector3d> points, const Corners& of_triangle) noexcept
+struct SupportSearch {
+  SupportSearch(std::span<const Eigen::Vector3d> points, const Corners& of_triangle) noexcept
       : point(points), corner(of_triangle), largest(max_abs_of(of_triangle)) {
     for (const Eigen::Vector3d& p : point) largest = std::max(largest, largest_magnitude(p));
   }
@@ -95,12 +95,12 @@ CoreDistance touching_at(const Eigen::Vector3d& point) noexcept {
 
 // By a triangle of the hull's points that is about as close as any: exchanges its points for others
 // as long as that brings it nearer.
-CoreDistance distance_of_triangle(const Search& search, Corners hull) noexcept {
+CoreDistance distance_of_triangle(const SupportSearch& search, Corners hull) noexcept {
   const Corners& corner = search.corner;
   TriangleDistance found = triangle_distance({hull}, {corner});
   const double error = 64 * kRoundoffF64 * search.largest;
   double lower = found.lower;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostDirections; ++step) {
     const Eigen::Vector3d between = found.second - found.first;
     lower = separation_near(found.first, found.second, search.point, corner, search.largest,
                             found.upper - error);
@@ -170,7 +170,7 @@ Eigen::Vector3d weights_in(const Corners& triangle, const Eigen::Vector3d& point
 
 CoreDistance hull_distance(std::span<const Eigen::Vector3d> points,
                            const Corners& corner) noexcept {
-  const Search search(points, corner);
+  const SupportSearch search(points, corner);
   const double size = search.largest;
   // Closer than that the line between two points is not trusted.
   constexpr double kNear = 0x1p-20;
@@ -183,7 +183,7 @@ CoreDistance hull_distance(std::span<const Eigen::Vector3d> points,
   Differences difference{first, first, first};
   way = first.at;
   double squared = squared_length(way);
-  for (int step = 0; step < kMostSteps && squared > kError * kError * size * size; ++step) {
+  for (int step = 0; step < kMostDirections && squared > kError * kError * size * size; ++step) {
     const DifferencePoint next = search.least(way);
     if (!(dot(way, next.at) < squared * (1 - 16 * kRoundoffF64))) break;
     std::array<double, 4> weight;

@@ -26,7 +26,7 @@
 namespace boxtree {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 // How far speeds along a unit vector are off.
 constexpr double kSpeedError = 16 * kRoundoffF64;
 
@@ -66,7 +66,7 @@ class Difference {
   }
 
   // The best direction: the hull has to move by `depth` along the normal.
-  double depth = kInfinity;
+  double depth = kUnbounded;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   [[nodiscard]] double error() const noexcept { return error_; }
 
@@ -102,7 +102,7 @@ class Difference {
 
   // How far the hull has to move along a unit vector.
   void consider(const Eigen::Vector3d& n, std::size_t face) noexcept {
-    double high = -kInfinity, low = kInfinity;
+    double high = -kUnbounded, low = kUnbounded;
     for (const Eigen::Vector3d& c : corner_) high = std::max(high, dot(n, c));
     for (const Eigen::Vector3d& p : points_) low = std::min(low, dot(n, p));
     if (!(high - low < depth)) return;
@@ -236,14 +236,14 @@ class Difference {
     const Corners at{vertices_[face.vertex[0]].at, vertices_[face.vertex[1]].at,
                      vertices_[face.vertex[2]].at};
     face.normal = unit_normal({at});
-    face.offset = face.normal.isZero(0) ? kInfinity : dot(face.normal, at[0]);
+    face.offset = face.normal.isZero(0) ? kUnbounded : dot(face.normal, at[0]);
     face.is_visible = false;
   }
 
   // count_ if there is none.
   [[nodiscard]] std::size_t nearest_face(const Eigen::Vector3d* against) const noexcept {
     std::size_t nearest = count_;
-    double least = kInfinity;
+    double least = kUnbounded;
     for (std::size_t f = 0; f < count_; ++f) {
       if (!(faces_[f].offset < least) || !is_against(faces_[f].normal, against)) continue;
       least = faces_[f].offset;
@@ -273,7 +273,7 @@ class Difference {
         Face& face = faces_[seen.next[e]];
         if (face.is_visible) continue;
         const bool is_seen =
-            face.offset == kInfinity || dot(face.normal, vertex.at) - face.offset > plane_error;
+            face.offset == kUnbounded || dot(face.normal, vertex.at) - face.offset > plane_error;
         if (is_seen) {
           face.is_visible = true;
           visible[visible_count++] = seen.next[e];
@@ -313,7 +313,7 @@ class Difference {
       set_plane(side);
     }
     for (std::size_t n = border_count; n < visible_count; ++n)
-      faces_[visible[n]].offset = kInfinity;
+      faces_[visible[n]].offset = kUnbounded;
     count_ += added;
     return true;
   }

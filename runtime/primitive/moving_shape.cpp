@@ -39,7 +39,7 @@ double speed_along(const Eigen::Vector3d& v, const Eigen::Vector3d& direction) n
 }
 
 // Of a vector whose components are at most 1, rounded up.
-double length_above(const Eigen::Vector3d& v) noexcept {
+double longest_length(const Eigen::Vector3d& v) noexcept {
   return std::sqrt(squared_length(v)) * (1 + 4 * kRoundoffF64);
 }
 
@@ -184,7 +184,7 @@ std::optional<double> first_touch_by_distance(const MovingShape& moving, const T
     const CoreDistance at = core_distance(moving.shape, corner);
     if (may_touch(moving, at)) return s;
     // Nothing comes nearer by more than it moves.
-    double advance = (at.lower - reach) / length_above(moving.direction);
+    double advance = (at.lower - reach) / longest_length(moving.direction);
     if (at.along > reach) {
       const double speed = speed_along(at.between, moving.direction);
       if (!(speed > 0)) return std::nullopt;  // it moves away from the gap

@@ -42,7 +42,7 @@ namespace boxtree {
 namespace {
 
 constexpr double kGrow = 1 + 8 * kRoundoffF64;
-constexpr double kProjectionError = 8 * kRoundoffF64;
+constexpr double kSlabError = 8 * kRoundoffF64;
 constexpr double kUnderflow = 0x1p-1068;
 constexpr double kTwoSums = 4 * kUnderflow;  // lost in the radius and in a projection
 constexpr double kOverlapError = 64 * kRoundoffF64;
@@ -75,7 +75,7 @@ class RoundedAxes {
       }
       const double above = high[k] - middle, below = middle - low[k];
       const double half_extent = std::max(above, below);
-      half_[k] = kGrow * half_extent + kProjectionError * farthest;
+      half_[k] = kGrow * half_extent + kSlabError * farthest;
       size = std::max(size, half_extent + farthest);
       asymmetry = std::max(asymmetry, std::abs(above - below));
     }
