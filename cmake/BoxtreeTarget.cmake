@@ -18,6 +18,16 @@ function(boxtree_set_target target)
                                            -Wsign-conversion -Wno-missing-field-initializers
                                            # Programs linked with --gc-sections keep what they call.
                                            -ffunction-sections -fdata-sections)
+  # Doubles are computed as doubles, not in the x87's 80 bits.
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(i.86|x86)$")
+    target_compile_options(${target} PUBLIC
+      $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-msse2> $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-mfpmath=sse>)
+  endif()
+  # g++ for Windows (12.2) takes inline functions for what its own copy of them is, so that callers keep
+  # values in registers which the copy that the linker chose changes.
+  if(MINGW AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(${target} PRIVATE -fno-ipa-ra)
+  endif()
   if(BOXTREE_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
@@ -91,7 +101,11 @@ endfunction()
 
 # boxtree_export_only(TARGET VERSION SYMBOLS): a shared library exports SYMBOLS, as its version VERSION, and no
 # others: templates of the standard library are visible whatever the compiler is told, so the linker is told.
+# On Windows it is what is marked that is exported.
 function(boxtree_export_only target version symbols)
+  if(WIN32)
+    return()
+  endif()
   set(map ${CMAKE_CURRENT_BINARY_DIR}/${target}.map)
   file(CONFIGURE OUTPUT ${map} CONTENT [[
 @version@ {

@@ -31,8 +31,10 @@ class Mapping {
   /// cooker does. Use copy() for files that others may modify.
   static Result<Mapping> map(const std::string& path);
 
+#ifndef _WIN32
   /// Maps a file that is open already; `name` is for messages. The caller keeps the descriptor.
   static Result<Mapping> map(int descriptor, const std::string& name);
+#endif
 
   /// Reads `path` into private memory, which later changes of the file do not affect.
   static Result<Mapping> copy(const std::string& path);

@@ -5,6 +5,17 @@
 #include <system_error>
 
 namespace boxtree {
+namespace {
+
+bool begins_at_root(const std::string& path) {
+#ifdef _WIN32
+  if (path.size() > 1 && path[1] == ':') return true;
+  if (!path.empty() && path[0] == '\\') return true;
+#endif
+  return !path.empty() && path[0] == '/';
+}
+
+}  // namespace
 
 Error read_failure(const std::string& path, int reason, const std::string& named_in) {
   if (reason == ENOENT || reason == ENOTDIR) {
@@ -13,7 +24,7 @@ Error read_failure(const std::string& path, int reason, const std::string& named
       return {Errc::kFileNotFound,
               missing + "names in " + named_in + " are relative to its folder"};
     }
-    const bool is_relative = path.empty() || path[0] != '/';
+    const bool is_relative = !begins_at_root(path);
     return {Errc::kFileNotFound,
             missing + "check the name" +
                 (is_relative ? ", which is relative to the current folder" : "")};

@@ -23,7 +23,7 @@ PARTS = list(ORDER)
 LIBRARIES = {
     "format": (),
     "runtime": ("Eigen/", "hwy/", "xxhash.h", "lzma.h", "zstd.h", "xmmintrin.h",
-                "sys/", "fcntl.h", "unistd.h"),
+                "sys/", "fcntl.h", "unistd.h", "windows.h"),
 }
 # What takes seconds of every source that sees it, and what of the project may include it.
 SLOW_HEADERS = {"CLI/": ("cooker/cli/command_app.h",),

@@ -4,7 +4,7 @@
 // is the one that refuses older C++.
 #pragma once
 
-#if __cplusplus < 201709L  // what g++ 10 says of C++20
+#if __cplusplus < 201709L && (!defined(_MSVC_LANG) || _MSVC_LANG < 202002L)  // what g++ 10 says of C++20
 #error "boxtree needs C++20: compile with -std=c++20, or link boxtree::runtime in CMake"
 #endif
 
