@@ -8,10 +8,18 @@ set(BOXTREE_QUERIES all CACHE STRING "Queries that it answers: all, or some of $
 # AVX-512 gains at most 3 % of the time and takes as much code as AVX2: so it is opt-in.
 set(BOXTREE_INSTRUCTION_SETS sse4 avx2 CACHE STRING
     "On x86-64, vectors that walks of the wide codecs are compiled for: some of sse4 avx2 avx512")
-option(BOXTREE_BLOB "Build boxtree::blob, which opens files that are compressed whole" ON)
-# Walks by Highway; only a build of other sources than runtime/CMakeLists.txt lists says otherwise.
+set(native ON)
+if(CMAKE_CROSSCOMPILING)
+  set(native OFF)
+endif()
+option(BOXTREE_BLOB "Build boxtree::blob, which opens files that are compressed whole" ${native})
+# Walks by Highway, whose library is one of this machine; a build of other sources than runtime/CMakeLists.txt
+# lists says otherwise.
 if(NOT DEFINED BOXTREE_HIGHWAY)
   set(BOXTREE_HIGHWAY ${BOXTREE_SIMD})
+  if(CMAKE_CROSSCOMPILING)
+    set(BOXTREE_HIGHWAY OFF)
+  endif()
 endif()
 
 # Sets RESULT to those of the known parts that `chosen` names, in the order in which they are known.
