@@ -19,8 +19,10 @@ bxt_status with_limits(const bxt_limits* given, bxt_error* error, Query query) {
   if (!read_struct(given, limits)) return refuse(error, "limits: struct_size");
   if constexpr (std::is_same_v<Handle, bxt_tree>) {
     return query(QueryLimits{limits.nodes});
+#if BOXTREE_HAS_SCENE_QUERIES
   } else {
     return query(LayerMask{limits.layers}, QueryLimits{limits.nodes});
+#endif
   }
 }
 
@@ -54,6 +56,7 @@ bxt_status with_face_options(const bxt_face_options* given, bxt_error* error, Qu
     FaceOptions options{.back_faces = back_faces, .limits = {read.nodes}};
     if (read.filter != nullptr) options.filter = filter;
     return query(options);
+#if BOXTREE_HAS_SCENE_QUERIES
   } else {
     const auto instance_filter = [&read](std::uint32_t instance) {
       return read.instance_filter(read.instance_filter_context, instance);
@@ -63,6 +66,7 @@ bxt_status with_face_options(const bxt_face_options* given, bxt_error* error, Qu
     if (read.filter != nullptr) options.filter = filter;
     if (read.instance_filter != nullptr) options.instance_filter = instance_filter;
     return query(options);
+#endif
   }
 }
 
