@@ -1,0 +1,201 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Builds the runtime and its C interface for each platform, asks fixed queries there (digests.c) and
+# compares the digests of the answers with those that are pinned (digests-COUNT.txt). Prints PASS, FAIL or
+# SKIP, the name and the digest of all; exit 1 when one fails. What is missing is installed.
+#   tests/platforms/run.sh [--count N] [NAME...]     default: all
+#   --count N    queries of each kind and file [15000: 10^5 in all]; those of a number that is not pinned are
+#                compared with what the first platform answered
+#   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake;
+#                scalar: without vectors; O0, clang, libcxx: other compilers and libraries;
+#                windows: x86-64 under Wine; arm64, armhf, riscv64, i386: under qemu or as they are;
+#                wasm: under Node
+# Environment: BOXTREE_BUILD, where boxtree is built, whose command line cooks [build]
+# shellcheck disable=SC2317 # platforms are called by name
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+source=$(cd "$here/../.." && pwd)
+build=${BOXTREE_BUILD:-$source/build}
+work=$build/platforms
+known="c amalgamation scalar O0 clang libcxx windows arm64 armhf riscv64 i386 wasm"
+count=15000
+if [ "${1:-}" = --count ]; then
+  count=$2
+  shift 2
+fi
+for name in "$@"; do
+  case " $known " in
+    *" $name "*) ;;
+    *) echo "tests/platforms/run.sh: no platform '$name'; expected some of: $known" >&2; exit 2 ;;
+  esac
+done
+wanted=${*:-$known}
+mkdir -p "$work"
+rm -f "$work"/digests-*.txt
+# shellcheck source=samples/packages.sh
+. "$source/samples/packages.sh"
+failed=0
+if [ ! -x "$build/boxtree" ] || [ ! -e "$build/runtime/libboxtree.so" ]; then
+  # shellcheck disable=SC2086 # lists of words
+  install_missing $BUILD_PACKAGES
+  [ -f "$build/CMakeCache.txt" ] || cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release >/dev/null
+  cmake --build "$build" --target boxtree_cli boxtree_c
+fi
+
+# The files, the same on every platform: their bytes are pinned by tests/same_bytes.
+files=()
+cook() {
+  local name=$1
+  shift
+  "$build/boxtree" cook "$@" -o "$work/$name.bxt" -q
+  files+=("$name.bxt")
+}
+cook level "$source/samples/meshes/level.obj" "$source/samples/meshes/crate.obj" --active-edges 5
+cook torus "$here/torus.obj" --exact --codec wide8
+cook torus-grid "$here/torus.obj" --grid-bits 16 --codec wide4
+cook torus-arrays "$here/torus.obj" --exact --for speed --codec wide8
+cook torus-f64 "$here/torus.obj" --f64 --exact --codec wide4
+cook crate "$source/samples/meshes/crate.obj" --active-edges 30 --materials
+cook courtyard "$source/samples/level/level.gltf"
+
+# conclude NAME PROGRAM [RUNNER...]: runs the queries and compares their digest.
+conclude() {
+  local name=$1 program=$2 digest
+  shift 2
+  if ! (cd "$work" && "$@" "$program" "$count" "${files[@]}") 2>"$work/$name.err" | tr -d '\r' >"$work/$name.txt"; then
+    tail -5 "$work/$name.err"
+    fail "$name" "does not run to its end"
+    return
+  fi
+  digest=$(awk '$1 == "all" {print $2}' "$work/$name.txt")
+  local pinned=$here/digests-$count.txt
+  if [ ! -f "$pinned" ]; then
+    pinned=$work/digests-$count.txt
+    [ -f "$pinned" ] || cp "$work/$name.txt" "$pinned"
+  fi
+  if diff "$pinned" "$work/$name.txt" >"$work/$name.diff"; then
+    echo "PASS $name $digest"
+  else
+    grep '^>' "$work/$name.diff" | head -5
+    fail "$name" "other answers than pinned: $digest"
+  fi
+}
+fail() {
+  echo "FAIL $1 $2"
+  failed=1
+}
+skip() { echo "SKIP $1 $2"; }
+
+# built NAME OPTION...: the libraries of a platform, in $work/NAME.
+built() {
+  local name=$1
+  shift
+  if cmake -S "$source" -B "$work/$name" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBOXTREE_BUILD_COOKER=OFF "$@" >"$work/$name.log" 2>&1 &&
+    cmake --build "$work/$name" --target boxtree_c boxtree_c_static >>"$work/$name.log" 2>&1; then
+    return 0
+  fi
+  grep -E 'error|Error' "$work/$name.log" | head -5
+  fail "$name" "does not build, see $work/$name.log"
+  return 1
+}
+# static NAME COMPILER [FLAG...]: what is linked with libboxtree.a; flags come last on the command line.
+static() {
+  local name=$1 compiler=$2
+  shift 2
+  "$compiler" -std=c99 -O2 -I"$source/runtime/include" "$here/digests.c" -o "$work/$name/digests" \
+    "$work/$name/runtime/libboxtree.a" "$@" >>"$work/$name.log" 2>&1 && return 0
+  tail -5 "$work/$name.log"
+  fail "$name" "the program does not compile"
+  return 1
+}
+# For another system.
+cross() {
+  local name=$1 system=$2 processor=$3 compiler=$4
+  shift 4
+  built "$name" -DCMAKE_SYSTEM_NAME="$system" -DCMAKE_SYSTEM_PROCESSOR="$processor" -DCMAKE_CXX_COMPILER="$compiler" "$@"
+}
+# emulated NAME PROCESSOR TRIPLE PACKAGES RUNNER [OPTION...]
+emulated() {
+  local name=$1 processor=$2 triple=$3 packages=$4 runner=$5
+  shift 5
+  # shellcheck disable=SC2086 # a list of words
+  install_missing $packages
+  cross "$name" Linux "$processor" "$triple-g++" "$@" || return 0
+  local flags=()
+  [ "$name" != i386 ] || flags=(-msse2 -mfpmath=sse)
+  static "$name" "$triple-gcc" "${flags[@]}" -static -lstdc++ -lm || return 0
+  # shellcheck disable=SC2086 # nothing where the processor runs it
+  conclude "$name" "$work/$name/digests" $runner
+}
+
+platform_c() {
+  gcc -std=c99 -pedantic-errors -Wall -Wextra -Werror -O2 -I"$source/runtime/include" "$here/digests.c" -o "$work/digests_c" \
+    -L"$build/runtime" -lboxtree -Wl,-rpath,"$build/runtime" -lm || { fail c "the program does not compile"; return 0; }
+  conclude c "$work/digests_c"
+}
+platform_scalar() {
+  built scalar -DBOXTREE_SIMD=OFF || return 0
+  static scalar gcc -lstdc++ -lm || return 0
+  conclude scalar "$work/scalar/digests"
+}
+platform_O0() {
+  built O0 -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 || return 0
+  static O0 gcc -lhwy -lstdc++ -lm || return 0
+  conclude O0 "$work/O0/digests"
+}
+platform_clang() {
+  install_missing clang
+  built clang -DCMAKE_CXX_COMPILER=clang++ || return 0
+  static clang clang -lhwy -lstdc++ -lm || return 0
+  conclude clang "$work/clang/digests"
+}
+platform_libcxx() {
+  install_missing clang libc++-dev libc++abi-dev
+  # Highway of Debian is compiled for libstdc++, so this is without.
+  built libcxx -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-stdlib=libc++ -DBOXTREE_HIGHWAY=OFF || return 0
+  static libcxx clang -lc++ -lc++abi -lm || return 0
+  conclude libcxx "$work/libcxx/digests"
+}
+platform_windows() {
+  install_missing g++-mingw-w64-x86-64-posix wine wine64
+  cross windows Windows x86_64 x86_64-w64-mingw32-g++-posix -DCMAKE_RC_COMPILER=x86_64-w64-mingw32-windres || return 0
+  cp "$work/windows/runtime/boxtree.dll" "$work/windows/"
+  x86_64-w64-mingw32-gcc-posix -std=c99 -O2 -I"$source/runtime/include" "$here/digests.c" -o "$work/windows/digests.exe" \
+    "$work/windows/runtime/libboxtree.dll.a" || { fail windows "the program does not compile"; return 0; }
+  WINEDEBUG=-all WINEPREFIX="$work/wine" conclude windows "$work/windows/digests.exe" wine
+}
+platform_arm64() { emulated arm64 aarch64 aarch64-linux-gnu "g++-aarch64-linux-gnu qemu-user-static" qemu-aarch64-static; }
+platform_armhf() { emulated armhf armv7l arm-linux-gnueabihf "g++-arm-linux-gnueabihf qemu-user-static" qemu-arm-static; }
+platform_riscv64() { emulated riscv64 riscv64 riscv64-linux-gnu "g++-riscv64-linux-gnu qemu-user-static" qemu-riscv64-static; }
+platform_i386() { emulated i386 i686 i686-linux-gnu g++-i686-linux-gnu ""; }
+# The two files of the amalgamation, in $work/NAME.
+amalgamated() { python3 "$source/runtime/c/amalgamate.py" "$source" "$work/$1"; }
+# With no flag of the project, and with contraction of products and sums where the compiler likes it.
+platform_amalgamation() {
+  amalgamated amalgamation
+  (
+    cd "$work/amalgamation"
+    g++ -std=c++20 -O2 -march=native -c boxtree_amalgamated.cpp
+    gcc -std=c99 -O2 -I. "$here/digests.c" boxtree_amalgamated.o -o digests -lstdc++ -lm
+    g++ -std=c++20 -O2 -DBXT_ONLY_RAYS -c boxtree_amalgamated.cpp -o rays.o
+    gcc -std=c99 -O2 -I. "$source/samples/c/first_ray.c" rays.o -o first_ray -lstdc++ -lm
+  ) >"$work/amalgamation.log" 2>&1 || { tail -5 "$work/amalgamation.log"; fail amalgamation "does not compile"; return 0; }
+  "$work/amalgamation/first_ray" "$work/level.bxt" >/dev/null || { fail amalgamation "of rays alone finds none"; return 0; }
+  conclude amalgamation "$work/amalgamation/digests"
+}
+# Node runs what emcc writes; files are those of this machine.
+platform_wasm() {
+  install_missing emscripten
+  amalgamated wasm
+  (
+    cd "$work/wasm"
+    export NODE_PATH=/usr/share/nodejs  # where the optimiser looks for what Debian has
+    em++ -std=c++20 -O2 -c boxtree_amalgamated.cpp
+    emcc -std=c99 -O2 -I. -c "$here/digests.c"
+    em++ -O2 boxtree_amalgamated.o digests.o -o digests.js -sNODERAWFS=1 -sTOTAL_STACK=2MB -sALLOW_MEMORY_GROWTH=1 -sEXIT_RUNTIME=1
+  ) >"$work/wasm.log" 2>&1 || { tail -5 "$work/wasm.log"; fail wasm "does not compile"; return 0; }
+  conclude wasm "$work/wasm/digests.js" node --no-experimental-fetch
+}
+
+for name in $wanted; do "platform_$name"; done
+exit "$failed"
