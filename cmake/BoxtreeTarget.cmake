@@ -24,9 +24,10 @@ function(boxtree_set_target target)
       $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-msse2> $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-mfpmath=sse>)
   endif()
   # g++ for Windows (12.2) takes inline functions for what its own copy of them is, so that callers keep
-  # values in registers which the copy that the linker chose changes.
+  # values in registers which the copy that the linker chose changes. And the square root of its C library is
+  # rounded twice: without errno it is the processor's.
   if(MINGW AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    target_compile_options(${target} PRIVATE -fno-ipa-ra)
+    target_compile_options(${target} PRIVATE -fno-ipa-ra -fno-math-errno)
   endif()
   if(BOXTREE_WERROR)
     target_compile_options(${target} PRIVATE -Werror)

@@ -7,10 +7,11 @@
 #   scalar          every test without vectors
 #   tsan            what runs on several threads, with ThreadSanitizer
 #   compare-builds  the bytes that other compilers and arm64 write
+#   platforms       the answers of other compilers, systems and processors
 #   --all           all of them: some hours on two cores
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all="release asan-ubsan scalar tsan compare-builds"
+all="release asan-ubsan scalar tsan compare-builds platforms"
 parts=${*:-release}
 [ "$parts" = --all ] && parts=$all
 for part in $parts; do
@@ -43,23 +44,37 @@ run_preset() {
   if [ "$status" -ne 0 ] && [ "$failures" -eq 0 ]; then failed=$((failed + 1)); fi
 }
 
+# count_lines FILE STATUS: PASS, FAIL and SKIP at the begin of lines are tests.
+count_lines() {
+  local failures
+  failures=$(grep -c '^FAIL' "$1" || true)
+  failed=$((failed + failures))
+  skipped=$((skipped + $(grep -c '^SKIP' "$1" || true)))
+  passed=$((passed + $(grep -c '^PASS' "$1" || true)))
+  if [ "$2" -ne 0 ] && [ "$failures" -eq 0 ]; then failed=$((failed + 1)); fi
+}
+
 # compare_builds: each build that writes files is a test.
 compare_builds() {
-  local said=build/compare_builds.txt status=0 failures
+  local said=build/compare_builds.txt status=0
   # shellcheck disable=SC2086 # a list of words
   install_missing $COMPARE_PACKAGES
   tests/same_bytes/compare_builds.sh | tee "$said" || status=$?
-  failures=$(grep -c '^FAIL' "$said" || true)
-  failed=$((failed + failures))
-  skipped=$((skipped + $(grep -c '^SKIP' "$said" || true)))
-  passed=$((passed + $(grep -c '^PASS' "$said" || true)))
-  if [ "$status" -ne 0 ] && [ "$failures" -eq 0 ]; then failed=$((failed + 1)); fi
+  count_lines "$said" "$status"
+}
+
+# platforms: each platform that answers queries is a test.
+platforms() {
+  local said=build/platforms.txt status=0
+  tests/platforms/run.sh | tee "$said" || status=$?
+  count_lines "$said" "$status"
 }
 
 mkdir -p build
 for part in $parts; do
   case $part in
     compare-builds) compare_builds ;;
+    platforms) platforms ;;
     asan-ubsan)
       # shellcheck disable=SC2086 # a list of words
       install_missing $FUZZ_PACKAGES

@@ -39,7 +39,7 @@ TOP = """// SPDX-License-Identifier: MIT
 #error "boxtree decides by exact arithmetic: compile it without -ffast-math"
 #endif
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("-ffp-contract=off")
+#pragma GCC optimize("-ffp-contract=off", "-fno-math-errno")
 #elif defined(__clang__)
 #pragma clang fp contract(off)
 #elif defined(_MSC_VER)
@@ -118,7 +118,7 @@ class Amalgamation:
         return (self.source / path).read_text(encoding="utf-8").splitlines()
 
     def includes(self, path):
-        """Files that a file includes, and the queries that an #if around asks for."""
+        """Files that a file includes, and the queries that an #if around needs."""
         conditions = []
         for line in self.lines(path):
             if re.match(r"\s*#\s*if", line):
@@ -127,8 +127,8 @@ class Amalgamation:
                 conditions.pop()
             found = INCLUDE.match(line)
             if found:
-                asked = [c for c in conditions if c]
-                yield self.path_of(*found.groups()), asked[-1] if asked else None
+                needed = [c for c in conditions if c]
+                yield self.path_of(*found.groups()), needed[-1] if needed else None
 
     def spread(self, path, guard, seen):
         """Every file that `path` includes is needed where it is."""

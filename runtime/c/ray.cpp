@@ -15,7 +15,9 @@
 #include "runtime/c/handle.h"
 #include "runtime/c/options.h"
 #include "runtime/query/nearest_hits.h"
+#if BOXTREE_HAS_SCENE_QUERIES
 #include "runtime/scene/nearest_scene_hits.h"
+#endif
 
 using namespace boxtree;
 using namespace boxtree::c;

@@ -6,7 +6,7 @@
 //     if (bxt_file_open("rock.bxt", NULL, &file, NULL) == BXT_OK &&
 //         bxt_tree_bind(file, BXT_ONLY_TREE, NULL, &tree, NULL) == BXT_OK) {
 //       const bxt_ray ray = {{0, 0, 10}, {0, 0, -1}, 0, INFINITY};
-//       bxt_ray_hit hit = {sizeof hit};
+//       bxt_ray_hit hit = {.struct_size = sizeof hit};
 //       if (bxt_tree_closest_hit(tree, &ray, NULL, &hit, NULL) == BXT_OK && hit.is_hit) use(hit.t);
 //     }
 //
@@ -20,11 +20,12 @@
 //
 // Structs. bxt_vec3, bxt_quaternion, bxt_pose, bxt_plane, bxt_ray, bxt_face and bxt_triangle are
 // what they are for good. All others begin with `struct_size`, the bytes that the caller's header
-// gives them: set it, as `bxt_ray_hit hit = {sizeof hit};` does, or take the struct from the
-// function bxt_default_...() of its name. Later versions add members at the end: a library reads
-// and writes no member that its caller does not know, and refuses (BXT_INVALID_QUERY) one it does
-// not know itself unless it is zero. Of an array of structs the first one's size is that of all;
-// the others need not set it. Arrays that are written have it in all of them.
+// gives them: set it, and the rest to zero, as `bxt_ray_hit hit = {.struct_size = sizeof hit};`
+// does, or take the struct from the function bxt_default_...() of its name. Later versions add
+// members at the end: a library reads and writes no member that its caller does not know, and
+// refuses (BXT_INVALID_QUERY) one it does not know itself unless it is zero. Of an array of structs
+// the first one's size is that of all; the others need not set it. Arrays that are written have it
+// in all of them.
 //
 // Memory. Handles come from functions with "open", "bind", "assemble" or "copy" in their names and
 // are given back, once, to the one that is named there; NULL is given back for nothing. The memory

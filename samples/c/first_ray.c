@@ -9,8 +9,8 @@ int main(int argument_count, char** arguments) {
 
   bxt_file* file;
   bxt_tree* tree;
-  bxt_error error = {sizeof error};
-  bxt_ray_hit hit = {sizeof hit};
+  bxt_error error = {.struct_size = sizeof error};
+  bxt_ray_hit hit = {.struct_size = sizeof hit};
   const bxt_ray down = {{2.5, 0, 10}, {0, 0, -1}, 0, INFINITY};
   if (bxt_file_open(arguments[1], NULL, &file, &error) ||
       bxt_tree_bind(file, BXT_ONLY_TREE, NULL, &tree, &error) ||

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 /* Ends the program if a function failed, with what it says of it. */
-static bxt_error error = {sizeof error};
+static bxt_error error = {.struct_size = sizeof error};
 static void check(bxt_status status) {
   if (status == BXT_OK) return;
   fprintf(stderr, "%s (code %d)\n", error.message, (int)error.status);
@@ -53,8 +53,8 @@ static bool print_pair(void* context, const bxt_face* first, const bxt_face* sec
 }
 
 static bxt_tree* open_tree(const char* path, const bxt_allocator* allocator, bxt_file** file) {
-  bxt_file_options file_options = {sizeof file_options};
-  bxt_tree_options tree_options = {sizeof tree_options};
+  bxt_file_options file_options = {.struct_size = sizeof file_options};
+  bxt_tree_options tree_options = {.struct_size = sizeof tree_options};
   bxt_tree* tree;
   file_options.allocator = allocator;
   tree_options.allocator = allocator;
@@ -69,9 +69,9 @@ static void query_tree(const bxt_tree* level) {
   const bxt_motion fall = bxt_motion_along(down);
   bxt_face_options options = bxt_default_face_options();
   bxt_ray rays[5];
-  bxt_ray_hit hits[5] = {{sizeof hits[0]}}; /* the first one's size is that of all */
-  bxt_cast_hit touch = {sizeof touch};
-  bxt_closest_point closest = {sizeof closest};
+  bxt_ray_hit hits[5] = {{.struct_size = sizeof hits[0]}}; /* the first one's size is that of all */
+  bxt_cast_hit touch = {.struct_size = sizeof touch};
+  bxt_closest_point closest = {.struct_size = sizeof closest};
   contacts found = {{{0}}, 0};
   uint32_t plate = 2;
   size_t kept;
@@ -107,7 +107,7 @@ static void query_tree(const bxt_tree* level) {
 
 static void move_crate(const bxt_tree* level, const bxt_tree* crate, const bxt_allocator* own) {
   const bxt_tree* const trees[2] = {level, crate};
-  bxt_placed_tree placed[2] = {{sizeof placed[0]}};
+  bxt_placed_tree placed[2] = {{.struct_size = sizeof placed[0]}};
   bxt_scene* scene;
   int step;
   placed[0].tree = 1;

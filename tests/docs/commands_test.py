@@ -20,7 +20,7 @@ import tempfile
 
 from blocks import blocks_of
 
-BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.sh|cmake -S \. -B build-deb )")
+BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.sh|cmake -S \. -B build-(deb|windows|arm64) )")
 
 # What this test itself writes.
 WRITTEN_HERE = {"make/", "ninja/", "program", "program.cpp", "program.out", "query.out"}

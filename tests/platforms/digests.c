@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asks fixed queries of each kind of files that are the same everywhere, by the C interface, and prints
+// Makes fixed queries of each kind of files that are the same everywhere, by the C interface, and prints
 // a digest of the answers of each kind and, last, of all: the same on every platform.
 //   digests COUNT FILE...      COUNT: queries of each kind and file
 // A file with several trees is queried tree by tree and each against the first; one with a scene as that.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds the runtime and its C interface for each platform, asks fixed queries there (digests.c) and
+# Builds the runtime and its C interface for each platform, makes fixed queries there (digests.c) and
 # compares the digests of the answers with those that are pinned (digests-COUNT.txt). Prints PASS, FAIL or
 # SKIP, the name and the digest of all; exit 1 when one fails. What is missing is installed.
 #   tests/platforms/run.sh [--count N] [NAME...]     default: all
@@ -174,10 +174,10 @@ amalgamated() { python3 "$source/runtime/c/amalgamate.py" "$source" "$work/$1"; 
 platform_amalgamation() {
   amalgamated amalgamation
   (
-    cd "$work/amalgamation"
-    g++ -std=c++20 -O2 -march=native -c boxtree_amalgamated.cpp
-    gcc -std=c99 -O2 -I. "$here/digests.c" boxtree_amalgamated.o -o digests -lstdc++ -lm
-    g++ -std=c++20 -O2 -DBXT_ONLY_RAYS -c boxtree_amalgamated.cpp -o rays.o
+    cd "$work/amalgamation" &&
+    g++ -std=c++20 -O2 -march=native -c boxtree_amalgamated.cpp &&
+    gcc -std=c99 -O2 -I. "$here/digests.c" boxtree_amalgamated.o -o digests -lstdc++ -lm &&
+    g++ -std=c++20 -O2 -DBXT_ONLY_RAYS -c boxtree_amalgamated.cpp -o rays.o &&
     gcc -std=c99 -O2 -I. "$source/samples/c/first_ray.c" rays.o -o first_ray -lstdc++ -lm
   ) >"$work/amalgamation.log" 2>&1 || { tail -5 "$work/amalgamation.log"; fail amalgamation "does not compile"; return 0; }
   "$work/amalgamation/first_ray" "$work/level.bxt" >/dev/null || { fail amalgamation "of rays alone finds none"; return 0; }
@@ -188,10 +188,10 @@ platform_wasm() {
   install_missing emscripten
   amalgamated wasm
   (
-    cd "$work/wasm"
+    cd "$work/wasm" || exit
     export NODE_PATH=/usr/share/nodejs  # where the optimiser looks for what Debian has
-    em++ -std=c++20 -O2 -c boxtree_amalgamated.cpp
-    emcc -std=c99 -O2 -I. -c "$here/digests.c"
+    em++ -std=c++20 -O2 -c boxtree_amalgamated.cpp &&
+    emcc -std=c99 -O2 -I. -c "$here/digests.c" &&
     em++ -O2 boxtree_amalgamated.o digests.o -o digests.js -sNODERAWFS=1 -sTOTAL_STACK=2MB -sALLOW_MEMORY_GROWTH=1 -sEXIT_RUNTIME=1
   ) >"$work/wasm.log" 2>&1 || { tail -5 "$work/wasm.log"; fail wasm "does not compile"; return 0; }
   conclude wasm "$work/wasm/digests.js" node --no-experimental-fetch
