@@ -39,7 +39,9 @@ class Mapping {
   /// Reads `path` into private memory, which later changes of the file do not affect.
   static Result<Mapping> copy(const std::string& path);
 
-  [[nodiscard]] Bytes bytes() const noexcept { return {data_, size_}; }
+  [[nodiscard]] Bytes bytes() const noexcept {
+    return {data_, size_};
+  }
 
   /// See File::advise. Does nothing with memory that no file is behind.
   bool advise(Access access) const noexcept;
@@ -52,6 +54,9 @@ class Mapping {
   const std::byte* data_ = nullptr;
   std::size_t size_ = 0;
   bool is_of_file_ = false;  // else a copy in memory
+#ifdef _WIN32
+  void* file_ = nullptr;  // what keeps others from writing to a mapped file
+#endif
 };
 
 /// Memory that is filled once and then becomes a Mapping. Move-only.

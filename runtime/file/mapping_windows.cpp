@@ -35,6 +35,7 @@ class Handle {
   // Functions that open say INVALID_HANDLE_VALUE or a null pointer.
   [[nodiscard]] bool is_open() const { return value_ != INVALID_HANDLE_VALUE && value_ != nullptr; }
   [[nodiscard]] HANDLE value() const { return value_; }
+  [[nodiscard]] HANDLE release() { return std::exchange(value_, nullptr); }
 
  private:
   HANDLE value_;
@@ -109,6 +110,7 @@ Result<std::size_t> regular_file_size(const Handle& file, const std::string& pat
 }  // namespace
 
 Mapping::~Mapping() {
+  if (file_ != nullptr) ::CloseHandle(file_);
   if (data_ == nullptr) return;
   void* const data = const_cast<std::byte*>(data_);
   if (is_of_file_) {
@@ -118,18 +120,20 @@ Mapping::~Mapping() {
   }
 }
 
-// Nobody may write to a file that is mapped: others who open it to write are refused.
+// Nobody may write to a file that is mapped: others who open it to write are refused as long as it
+// is open here.
 Result<Mapping> Mapping::map(const std::string& path) {
-  const Handle file(open_file(path, false));
+  Handle file(open_file(path, false));
   const Result<std::size_t> size = regular_file_size(file, path);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
-  // Both handles may be closed before the view is.
   const Handle section(::CreateFileMappingW(file.value(), nullptr, PAGE_READONLY, 0, 0, nullptr));
   if (!section.is_open()) return system_error(Errc::kMapFailed, path, ::GetLastError());
   const void* const data = ::MapViewOfFile(section.value(), FILE_MAP_READ, 0, 0, *size);
   if (data == nullptr) return system_error(Errc::kMapFailed, path, ::GetLastError());
-  return Mapping(static_cast<const std::byte*>(data), *size, true);
+  Mapping mapping(static_cast<const std::byte*>(data), *size, true);
+  mapping.file_ = file.release();
+  return mapping;
 }
 
 bool Mapping::advise(Access access) const noexcept {

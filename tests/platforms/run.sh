@@ -162,7 +162,19 @@ platform_windows() {
   cp "$work/windows/runtime/boxtree.dll" "$work/windows/"
   x86_64-w64-mingw32-gcc-posix -std=c99 -O2 -I"$source/runtime/include" "$here/digests.c" -o "$work/windows/digests.exe" \
     "$work/windows/runtime/libboxtree.dll.a" || { fail windows "the program does not compile"; return 0; }
-  WINEDEBUG=-all WINEPREFIX="$work/wine" conclude windows "$work/windows/digests.exe" wine
+  export WINEDEBUG=-all WINEPREFIX="$work/wine"
+  rm -rf "$work/windows/files"
+  mkdir "$work/windows/files"
+  if ! (
+    cd "$work/windows" &&
+      x86_64-w64-mingw32-gcc-posix -std=c99 -O2 -I"$source/runtime/include" "$here/windows_files.c" \
+        runtime/libboxtree.dll.a -o files/windows_files.exe && cp boxtree.dll files && cd files && wine windows_files.exe "$work/crate.bxt"
+  ) >"$work/windows.files.log" 2>&1; then
+    grep -v ':err:\|^wine' "$work/windows.files.log" | tail -5
+    fail windows "files are opened in another way, see $work/windows.files.log"
+    return 0
+  fi
+  conclude windows "$work/windows/digests.exe" wine
 }
 platform_arm64() { emulated arm64 aarch64 aarch64-linux-gnu "g++-aarch64-linux-gnu qemu-user-static" qemu-aarch64-static; }
 platform_armhf() { emulated armhf armv7l arm-linux-gnueabihf "g++-arm-linux-gnueabihf qemu-user-static" qemu-arm-static; }
@@ -180,7 +192,9 @@ platform_amalgamation() {
     g++ -std=c++20 -O2 -DBXT_ONLY_RAYS -c boxtree_amalgamated.cpp -o rays.o &&
     gcc -std=c99 -O2 -I. "$source/samples/c/first_ray.c" rays.o -o first_ray -lstdc++ -lm
   ) >"$work/amalgamation.log" 2>&1 || { tail -5 "$work/amalgamation.log"; fail amalgamation "does not compile"; return 0; }
-  "$work/amalgamation/first_ray" "$work/level.bxt" >/dev/null || { fail amalgamation "of rays alone finds none"; return 0; }
+  "$build/boxtree" cook "$source/samples/meshes/level.obj" -o "$work/ground.bxt" -q
+  [ "$("$work/amalgamation/first_ray" "$work/ground.bxt")" = "ground at height 0.5, face 2" ] ||
+    { fail amalgamation "finds another ground with BXT_ONLY_RAYS"; return 0; }
   conclude amalgamation "$work/amalgamation/digests"
 }
 # Node runs what emcc writes; files are those of this machine.
