@@ -90,7 +90,8 @@ skip() { echo "SKIP $1 $2"; }
 built() {
   local name=$1
   shift
-  if cmake -S "$source" -B "$work/$name" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBOXTREE_BUILD_COOKER=OFF "$@" >"$work/$name.log" 2>&1 &&
+  if cmake -S "$source" -B "$work/$name" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBOXTREE_BUILD_COOKER=OFF \
+    -DBOXTREE_PRECOMPILE_HEADERS=OFF "$@" >"$work/$name.log" 2>&1 &&
     cmake --build "$work/$name" --target boxtree_c boxtree_c_static >>"$work/$name.log" 2>&1; then
     return 0
   fi
