@@ -112,8 +112,7 @@ class Cook {
   // A tolerance of the options; plan_scene checks those of a profile.
   [[nodiscard]] Status check_digits(const ImportReport& report) const {
     if (!options_.grid.tolerance) return {};
-    return check_moved_by_f32(source_of(report).string(), report.moved_by_f32,
-                              *options_.grid.tolerance);
+    return check_moved_by_f32(report, *options_.grid.tolerance);
   }
 
   // Called for one mesh after another; may be called again for an imported mesh.

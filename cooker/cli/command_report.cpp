@@ -236,9 +236,8 @@ Result<SourceMesh> read_mesh(const std::filesystem::path& path, const Arguments&
   if (arguments.f64) options.precision = Precision::kF64;
   Result<Imported> imported = import_mesh(path, options);
   if (!imported) return imported.error();
-  const double moved = imported->report.moved_by_f32;
   if (arguments.tolerance) {
-    const Status status = check_moved_by_f32(path.string(), moved, *arguments.tolerance);
+    const Status status = check_moved_by_f32(imported->report, *arguments.tolerance);
     if (!status) return status.error();
   }
   for (const std::string& warning : warnings_of(imported->report)) warn(warning);
@@ -429,9 +428,10 @@ void add_report_command(Command& program, int& status) {
                 "Write a row for each allowed error and budget of approximate queries as CSV")
       ->excludes(paper);
   command
-      .add_flag("--f64", arguments->f64,
-                "Hold positions as f64, not f32: all digits of OBJ, OFF and PLY files, for meshes "
-                "far from the origin")
+      .add_flag(
+          "--f64", arguments->f64,
+          "Hold positions as f64, not f32, for meshes far from the origin: all digits of OBJ, "
+          "OFF and PLY files, and what nodes of others place")
       ->excludes(paper);
   command
       .add_option(

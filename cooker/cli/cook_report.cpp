@@ -376,11 +376,13 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
         import.has_half_face ? " and is half a face, which is left out" : "", kAsIfCut));
   }
   if (import.moved_by_f32 > 0) {
-    warnings.push_back(
-        fmt::format("{}: f32 has few digits for a mesh so far from the origin and moved a vertex "
-                    "by up to {:.3g}; cook --f64 keeps all digits, and with "
-                    "--tolerance LENGTH or the tolerance of a profile in few bytes",
-                    source, import.moved_by_f32));
+    warnings.push_back(fmt::format(
+        "{}: f32 has few digits for a mesh so far from the origin and moved a vertex "
+        "by up to {:.3g}; cook {}, and with --tolerance LENGTH or the tolerance of a "
+        "profile in few bytes{}",
+        source, import.moved_by_f32,
+        import.moved_by_nodes ? "--f64 places its nodes in f64" : "--f64 keeps all digits",
+        import.moved_by_nodes ? "; --scene keeps their places" : ""));
   }
   return warnings;
 }

@@ -39,23 +39,30 @@ bool may_have_moved(const Positions& positions) {
 }
 
 // The result goes into files, so it is computed in a fixed order, which Eigen's norms do not have.
+double moved_by_f32(const Eigen::Vector3d& position) {
+  const Eigen::Vector3d off(lost_to_f32(position[0]), lost_to_f32(position[1]),
+                            lost_to_f32(position[2]));
+  const double scale = scale_to_one(off);
+  return std::sqrt(squared_length(off * scale)) / scale;
+}
+
 double moved_by_f32(const Positions& positions) {
   double farthest = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Eigen::Vector3d p = positions[i];
-    const Eigen::Vector3d off(lost_to_f32(p[0]), lost_to_f32(p[1]), lost_to_f32(p[2]));
-    const double scale = scale_to_one(off);
-    farthest = std::max(farthest, std::sqrt(squared_length(off * scale)) / scale);
+    farthest = std::max(farthest, moved_by_f32(positions[i]));
   }
   return farthest;
 }
 
-Status check_moved_by_f32(const std::string& source, double moved, double tolerance) {
-  if (moved <= tolerance) return {};
+Status check_moved_by_f32(const ImportReport& report, double tolerance) {
+  if (report.moved_by_f32 <= tolerance) return {};
   return Error{Errc::kMeshUnsupported,
                fmt::format("{}: f32 moves a vertex by up to {:.3g}, farther than the tolerance of "
-                           "{}; --f64 keeps all digits",
-                           source, moved, tolerance)};
+                           "{}; {}",
+                           source_of(report).string(), report.moved_by_f32, tolerance,
+                           report.moved_by_nodes
+                               ? "--f64 places its nodes in f64, cook --scene keeps their places"
+                               : "--f64 keeps all digits")};
 }
 
 }  // namespace boxtree::cooker

@@ -3,10 +3,11 @@
 // map, the fewer bits are left for its shape.
 #pragma once
 
-#include <string>
+#include <Eigen/Core>
 
 #include <boxtree/error.h>
 
+#include "cooker/import/import.h"
 #include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
@@ -18,11 +19,13 @@ namespace boxtree::cooker {
 /// Whether rounding to these positions of f32 can have moved a vertex farther than that.
 [[nodiscard]] bool may_have_moved(const Positions& positions);
 
-/// The largest distance of a position from the nearest one with coordinates of f32.
+/// The distance of a position from the nearest one with coordinates of f32.
+[[nodiscard]] double moved_by_f32(const Eigen::Vector3d& position);
+/// The largest of these distances.
 [[nodiscard]] double moved_by_f32(const Positions& positions);
 
-/// kMeshUnsupported if f32 has moved a vertex of `source` farther than a tolerance, which is for
-/// what the source says.
-Status check_moved_by_f32(const std::string& source, double moved, double tolerance);
+/// kMeshUnsupported if f32 has moved a vertex farther than a tolerance, which is for what the
+/// source says.
+Status check_moved_by_f32(const ImportReport& report, double tolerance);
 
 }  // namespace boxtree::cooker

@@ -12,6 +12,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "cooker/import/f32_digits.h"
 #include "cooker/import/face_runs.h"
 #include "cooker/import/weld.h"
 
@@ -58,8 +59,11 @@ class Flattener {
 
   /// Number of the next face: the faces of three corners or more added so far.
   [[nodiscard]] std::uint32_t next_face_id() const { return next_face_id_; }
+  /// How far rounding to T moved a vertex from its place in double, at most.
+  [[nodiscard]] double moved() const { return moved_; }
 
  private:
+  [[nodiscard]] Vector3d place_in_double(unsigned vertex) const;
   std::array<T, 3> place(unsigned vertex) const;
   void check_vertices();
   Status mark_used();
@@ -78,6 +82,7 @@ class Flattener {
   std::vector<std::uint32_t> remap_;    // for each vertex of the instance: state or number
   std::vector<std::uint32_t> corners_;  // of the current face, as indices into positions_
   std::uint32_t next_face_id_ = 0;
+  double moved_ = 0;
 
   // The current instance.
   const aiMesh* source_ = nullptr;
@@ -107,9 +112,14 @@ Status Flattener<T>::add(const aiMesh& mesh, const Transform& transform) {
 }
 
 template <class T>
-std::array<T, 3> Flattener<T>::place(unsigned vertex) const {
+Vector3d Flattener<T>::place_in_double(unsigned vertex) const {
   const Vector3d source = position_of(source_->mVertices[vertex]);
-  const Vector3d placed = is_identity_ ? source : transform_ * source;
+  return is_identity_ ? source : transform_ * source;
+}
+
+template <class T>
+std::array<T, 3> Flattener<T>::place(unsigned vertex) const {
+  const Vector3d placed = place_in_double(vertex);
   return {static_cast<T>(placed[0]), static_cast<T>(placed[1]), static_cast<T>(placed[2])};
 }
 
@@ -179,7 +189,11 @@ void Flattener<T>::weld_used() {
   welder_.reserve(std::min<std::size_t>(used, source_->mNumFaces));
   const std::size_t before = positions_.size() / 3;
   for (unsigned vertex = 0; vertex < source_->mNumVertices; ++vertex) {
-    if (remap_[vertex] == kUsed) remap_[vertex] = welder_.add(place(vertex));
+    if (remap_[vertex] != kUsed) continue;
+    remap_[vertex] = welder_.add(place(vertex));
+    if (std::is_same_v<T, float> && !is_identity_) {
+      moved_ = std::max(moved_, moved_by_f32(place_in_double(vertex)));
+    }
   }
   report_.vertices_welded += used - (positions_.size() / 3 - before);
 }
@@ -286,6 +300,10 @@ Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances
   if (positions.precision == Precision::kF32) {
     Flattener<float> flattener(context, positions.f32, out);
     status = flatten(scene, instances, uses, context, flattener, materials, out.user_data);
+    if (flattener.moved() > unnoticed_move(positions)) {
+      out.report.moved_by_f32 = out.mesh.moved_by_f32 = flattener.moved();
+      out.report.moved_by_nodes = true;
+    }
   } else {
     Flattener<double> flattener(context, positions.f64, out);
     status = flatten(scene, instances, uses, context, flattener, materials, out.user_data);

@@ -24,8 +24,8 @@ struct ImportOptions {
   /// [false] Drop faces with a NaN or infinite vertex, or with a vertex number out of range, and
   /// report their numbers, instead of refusing the file.
   bool skip_bad = false;
-  /// [kF32] Precision of positions. kF64 keeps all digits of OBJ, OFF and PLY files; in other
-  /// formats it only makes node transforms more exact.
+  /// [kF32] Precision of positions. kF64 keeps all digits of OBJ, OFF, PLY and text STL files; in
+  /// other formats it only makes node transforms more exact.
   Precision precision = Precision::kF32;
   /// [false] Take kF64 for a PLY file whose coordinates are doubles, if f32 does not hold all of
   /// them.
@@ -83,9 +83,11 @@ struct ImportReport {
   std::size_t vertices_welded = 0;   // bit-equal duplicates removed
   std::size_t degenerate_faces = 0;  // zero area; kept
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
-  /// OBJ, OFF and PLY read as f32: how far a vertex was moved by that, at most; 0 if no farther
-  /// than unnoticed_move (f32_digits.h). The mesh has it, too.
+  /// OBJ, OFF, PLY and text STL read as f32, and meshes that nodes place in f32: how far a vertex
+  /// was moved by that, at most; 0 if no farther than unnoticed_move (f32_digits.h). The mesh has
+  /// it, too.
   double moved_by_f32 = 0;
+  bool moved_by_nodes = false;      // moved_by_f32 is of vertices that nodes place
   bool has_no_materials = false;    // with ImportOptions::materials: no face has one
   bool has_no_groups = false;       // with kGroups: all faces are in the group without a name
   bool has_half_face = false;       // OBJ: that line is a face of two corners or fewer, left out
@@ -130,7 +132,7 @@ struct Imported {
 /// kOutOfMemory. Throws nothing, prints nothing and uses no global state: safe to call from several
 /// threads, in any locale.
 ///
-/// Decimals of OBJ, OFF, PLY and text STL are rounded once, to the nearest f32 or f64 (STL: f32).
+/// Decimals of OBJ, OFF, PLY and text STL are rounded once, to the nearest f32 or f64.
 /// Vertices and faces of these four keep the order of the file, whatever the groups of an OBJ. In
 /// formats that assimp reads, positions have the digits of f32, and decimals can be a unit in the
 /// last place off the nearest. glTF is checked before assimp's reader, which repairs it silently. A

@@ -1220,6 +1220,26 @@ expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.
 same "$(cat err)" ''
 grep -q 'Positions are f64' far.html
 
+# The same of a mesh whose node places it there, as an export does.
+expect 0 "$boxtree" cook far.obj -o far.bxt -q --f64
+expect 0 "$boxtree" export far.bxt --triangles -o placed.glb
+for options in '' --exact; do
+  expect 0 "$boxtree" cook placed.glb -o placed.bxt -q $options
+  same "$(cat err)" 'boxtree: warning: placed.glb: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 places its nodes in f64, and with --tolerance LENGTH or the tolerance of a profile in few bytes; --scene keeps their places'
+  expect 0 "$boxtree" info placed.bxt --json
+  jq -e '.trees[0].max_vertex_error > 0.2 and .trees[0].max_vertex_error < 0.3' out >/dev/null
+done
+for command in 'cook -o placed.bxt' 'report -o placed.html --quick --no-times'; do
+  expect 5 "$boxtree" $command placed.glb -q --tolerance 0.001
+  same "$(cat err)" 'boxtree: mesh_unsupported: placed.glb: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 places its nodes in f64, cook --scene keeps their places'
+done
+for options in --f64 '--f64 --tolerance 0.001' '--scene --tolerance 0.001'; do
+  expect 0 "$boxtree" cook placed.glb -o placed.bxt -q $options
+  same "$(cat err)" ''
+  expect 0 "$boxtree" query placed.bxt point --at 459123.4321,5412345.6789,7 --json
+  jq -e '.distance - 7 | fabs < 1e-6' out >/dev/null
+done
+
 # f64 from the digits of the file to the answer: layers 1e-9 apart, a million units out.
 printf 'v 1000000 0 0\nv 1000001 0 0\nv 1000000 1 0\nv 1000000 0 -1e-9\nv 1000001 0 -1e-9\nv 1000000 1 -1e-9\nf 1 2 3\nf 4 5 6\n' >layers.obj
 for codec in packed-f64 plain-f16; do

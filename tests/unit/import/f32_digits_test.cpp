@@ -7,6 +7,9 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "gltf_text.h"
 #include "temp_files.h"
 
 namespace boxtree::cooker {
@@ -44,6 +47,28 @@ TEST_F(F32DigitsTest, SaysNothingWhereDigitsSufficeOrNoneAreLost) {
   ImportOptions options;
   options.precision = Precision::kF64;
   EXPECT_EQ(load("far.obj", std::string(kFar) + kTriangle, options).report.moved_by_f32, 0);
+}
+
+// A triangle with legs of 0.5 that a node places at (487123.25, 5884352, 0), where f32 counts in
+// steps of 1/32 and 1/2.
+TEST_F(F32DigitsTest, MeasuresWhatF32MovesOfMeshesThatNodesPlace) {
+  GltfText gltf;
+  gltf.add_mesh("tile", {{{0, 0.25f, 0, 0.5f, 0.25f, 0, 0, 0.625f, 0.01f}}});
+  const auto load_placed = [&](const char* translation, Precision precision) {
+    ImportOptions options;
+    options.precision = precision;
+    return load("placed.gltf",
+                gltf.text(fmt::format(R"({{"mesh":0,"translation":{}}})", translation)), options);
+  };
+  const std::string far = "[487123.25, 5884352, 0]";
+  const Imported placed = load_placed(far.c_str(), Precision::kF32);
+  EXPECT_EQ(placed.report.moved_by_f32, 0.25);
+  EXPECT_EQ(placed.mesh.moved_by_f32, 0.25);
+  EXPECT_TRUE(placed.report.moved_by_nodes);
+  EXPECT_TRUE(check_moved_by_f32(placed.report, 0.25).ok());
+  EXPECT_EQ(check_moved_by_f32(placed.report, 0.2).code(), Errc::kMeshUnsupported);
+  EXPECT_EQ(load_placed(far.c_str(), Precision::kF64).report.moved_by_f32, 0);
+  EXPECT_EQ(load_placed("[4, 8, 0]", Precision::kF32).report.moved_by_f32, 0);
 }
 
 TEST_F(F32DigitsTest, LooksAgainWhereF32CountsInStepsOf16BitsOfTheExtent) {
