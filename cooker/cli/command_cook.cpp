@@ -308,7 +308,7 @@ void add_cook_command(Command& program, int& status) {
                        "with doubles [else auto may choose a grid of 24 bits]");
   command.add_flag("--f64", arguments->f64,
                    "Hold positions as f64, not f32, for meshes far from the origin: all digits of "
-                   "OBJ, OFF and PLY files, and what nodes of others place");
+                   "OBJ, OFF, PLY and text STL files, and what nodes of others place");
   Option* tolerance = command.add_option("--tolerance", arguments->job.options.grid.tolerance,
                                          "Positions may be rounded to the coarsest grid on which "
                                          "no vertex is found to move farther, in "

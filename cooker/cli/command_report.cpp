@@ -431,7 +431,7 @@ void add_report_command(Command& program, int& status) {
       .add_flag(
           "--f64", arguments->f64,
           "Hold positions as f64, not f32, for meshes far from the origin: all digits of OBJ, "
-          "OFF and PLY files, and what nodes of others place")
+          "OFF, PLY and text STL files, and what nodes of others place")
       ->excludes(paper);
   command
       .add_option(

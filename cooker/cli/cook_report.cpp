@@ -17,6 +17,7 @@
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/surface_text.h"
+#include "cooker/import/f32_digits.h"
 #include "cooker/import/file_error.h"
 #include "cooker/text/counted.h"
 
@@ -376,13 +377,20 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
         import.has_half_face ? " and is half a face, which is left out" : "", kAsIfCut));
   }
   if (import.moved_by_f32 > 0) {
-    warnings.push_back(fmt::format(
-        "{}: f32 has few digits for a mesh so far from the origin and moved a vertex "
-        "by up to {:.3g}; cook {}, and with --tolerance LENGTH or the tolerance of a "
-        "profile in few bytes{}",
-        source, import.moved_by_f32,
-        import.moved_by_nodes ? "--f64 places its nodes in f64" : "--f64 keeps all digits",
-        import.moved_by_nodes ? "; --scene keeps their places" : ""));
+    std::string remedy = remedy_of(import.f32_loss);
+    if (import.f32_loss != F32Loss::kReader) {
+      remedy = fmt::format(
+          "cook {}, and with --tolerance LENGTH or the tolerance of a profile in few bytes",
+          remedy);
+    }
+    warnings.push_back(
+        fmt::format("{}: f32 has few digits for a mesh so far from the origin and moved a vertex "
+                    "by up to {:.3g}; {}",
+                    source, import.moved_by_f32, remedy));
+  }
+  if (import.has_f32_alone && import.moved_by_f32 == 0) {
+    warnings.push_back(
+        fmt::format("{}: its coordinates were read as f32, and --f64 keeps no more", source));
   }
   return warnings;
 }

@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cooker/import/f32_digits.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/flatten.h"
 #include "cooker/import/gltf_faces.h"
@@ -179,24 +180,46 @@ Result<std::vector<std::uint32_t>> read_user_data(const SourceFile& source,
   return of_meshes;
 }
 
-// Whether the last line has no end, in formats in which a truncated file is otherwise valid.
-Result<bool> check_text(const SourceFile& source) {
+struct TextFacts {
+  bool has_open_end = false;  // in formats in which a truncated file is otherwise valid
+  double loss = 0;            // loss_in_text
+};
+
+Result<TextFacts> check_text(const SourceFile& source) {
   const TextFormat* const format = find_extension(kTextFormats, source.path());
-  if (format == nullptr) return false;
+  if (format == nullptr && !has_extension(source.path(), "dae")) return TextFacts();
   const Result<std::string> file = source.read();
   if (!file.ok()) return file.error();
-  if (format->check_end == nullptr) return has_open_end(*file);
-  const Status status = format->check_end(*file);
-  if (!status.ok()) return in_file(source.title(), status.error());
-  return false;
+  TextFacts facts;
+  if (format != nullptr && format->check_end != nullptr) {
+    const Status status = format->check_end(*file);
+    if (!status.ok()) return in_file(source.title(), status.error());
+  }
+  facts.has_open_end = format != nullptr && format->check_end == nullptr && has_open_end(*file);
+  facts.loss = loss_in_text(*file);
+  return facts;
+}
+
+bool has_f32_alone(const Positions& positions) {
+  return positions.precision == Precision::kF64 && moved_by_f32(positions) == 0;
+}
+
+void state_precision(Imported& mesh) {
+  mesh.report.has_f32_alone = has_f32_alone(mesh.mesh.positions);
+}
+
+void state_precision(SourceScene& scene) {
+  scene.report.has_f32_alone =
+      std::all_of(scene.meshes.begin(), scene.meshes.end(),
+                  [](const SceneMesh& each) { return has_f32_alone(each.mesh.positions); });
 }
 
 }  // namespace
 
 Status import_with_assimp(const SourceFile& source, const ImportOptions& options,
                           ImportWanted wanted, ImportedFile& out) {
-  const Result<bool> is_open = check_text(source);
-  if (!is_open.ok()) return is_open.error();
+  const Result<TextFacts> text = check_text(source);
+  if (!text.ok()) return text.error();
   const Result<StatedFaces> stated = read_stated_faces(source);
   if (!stated.ok()) return stated.error();
   if (options.try_first) {
@@ -204,7 +227,7 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
     if (!tried.ok()) return in_file(source.title(), tried.error());
   }
   ImportReport report;
-  report.has_open_end = *is_open;
+  report.has_open_end = text->has_open_end;
   SourceUse use;
   auto scene = read_scene(source, FaceOrder::kOfFile, use);
   if (!scene.ok()) return in_file(source.title(), scene.error());
@@ -215,15 +238,21 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
   const Result<std::vector<std::uint32_t>> user_data =
       read_user_data(source, options, *scene.value(), report);
   if (!user_data.ok()) return user_data.error();
-  Status status = take_over(source, wanted, *scene.value(),
-                            {options, source.title(), {}, *user_data}, std::move(report), out);
+  Status status =
+      take_over(source, wanted, *scene.value(),
+                {options, source.title(), {}, *user_data, text->loss}, std::move(report), out);
   if (!status.ok()) return status;
   // Hashed last, so that a refused file is not read twice.
   const Result<std::uint64_t> hash = source.bytes()
                                          ? Result<std::uint64_t>(hash_source_bytes(*source.bytes()))
                                          : hash_source_files(use.files);
   if (!hash.ok()) return hash.error();
-  std::visit([&](auto& imported) { imported.report.content_hash = hash.value(); }, out);
+  std::visit(
+      [&](auto& imported) {
+        imported.report.content_hash = hash.value();
+        state_precision(imported);
+      },
+      out);
   return {};
 }
 

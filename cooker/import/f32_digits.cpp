@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "cooker/import/text_tokens.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 
@@ -54,15 +57,41 @@ double moved_by_f32(const Positions& positions) {
   return farthest;
 }
 
+double loss_in_text(std::string_view text) {
+  constexpr std::string_view kNumber = "0123456789+-.eE";
+  double largest = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_not_of(kNumber), text.size());
+    const std::optional<double> number = read_number<double>(text.substr(0, end));
+    if (number && std::abs(*number) <= std::numeric_limits<float>::max()) {
+      largest = std::max(largest, std::abs(lost_to_f32(*number)));
+    }
+    text.remove_prefix(end);
+    text.remove_prefix(std::min(text.find_first_of(kNumber), text.size()));
+  }
+  return largest;
+}
+
+std::string remedy_of(F32Loss loss) {
+  switch (loss) {
+    case F32Loss::kDigits:
+      return "--f64 keeps all digits";
+    case F32Loss::kNodes:
+      return "--f64 or a scene (--scene) keeps the places of its nodes";
+    case F32Loss::kReader:
+      break;
+  }
+  return "its reader has f32 alone, with --f64, too; those of OBJ, OFF, PLY and text STL keep all "
+         "digits";
+}
+
 Status check_moved_by_f32(const ImportReport& report, double tolerance) {
   if (report.moved_by_f32 <= tolerance) return {};
   return Error{Errc::kMeshUnsupported,
                fmt::format("{}: f32 moves a vertex by up to {:.3g}, farther than the tolerance of "
                            "{}; {}",
                            source_of(report).string(), report.moved_by_f32, tolerance,
-                           report.moved_by_nodes
-                               ? "--f64 places its nodes in f64, cook --scene keeps their places"
-                               : "--f64 keeps all digits")};
+                           remedy_of(report.f32_loss))};
 }
 
 }  // namespace boxtree::cooker

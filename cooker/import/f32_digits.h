@@ -3,6 +3,9 @@
 // map, the fewer bits are left for its shape.
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include <Eigen/Core>
 
 #include <boxtree/error.h>
@@ -23,6 +26,12 @@ namespace boxtree::cooker {
 [[nodiscard]] double moved_by_f32(const Eigen::Vector3d& position);
 /// The largest of these distances.
 [[nodiscard]] double moved_by_f32(const Positions& positions);
+
+/// The largest distance of a number in a text from the nearest f32, whatever the number is of.
+[[nodiscard]] double loss_in_text(std::string_view text);
+
+/// What moves no vertex, after "cook ": "--f64 keeps all digits".
+[[nodiscard]] std::string remedy_of(F32Loss loss);
 
 /// kMeshUnsupported if f32 has moved a vertex farther than a tolerance, which is for what the
 /// source says.

@@ -15,6 +15,7 @@
 #include "cooker/import/f32_digits.h"
 #include "cooker/import/face_runs.h"
 #include "cooker/import/weld.h"
+#include "runtime/primitive/rounding.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -49,6 +50,7 @@ class Flattener {
  public:
   Flattener(const SourceContext& context, std::vector<T>& positions, Imported& out)
       : options_(context.options),
+        loss_in_text_(context.loss_in_text),
         file_(context.file),
         positions_(positions),
         report_(out.report),
@@ -61,9 +63,12 @@ class Flattener {
   [[nodiscard]] std::uint32_t next_face_id() const { return next_face_id_; }
   /// How far rounding to T moved a vertex from its place in double, at most.
   [[nodiscard]] double moved() const { return moved_; }
+  /// How far from its place by the digits of a text its reader moved a vertex, at most.
+  [[nodiscard]] double moved_by_reader() const { return moved_by_reader_; }
 
  private:
   [[nodiscard]] Vector3d place_in_double(unsigned vertex) const;
+  [[nodiscard]] double moved_by_reader(unsigned vertex) const;
   std::array<T, 3> place(unsigned vertex) const;
   void check_vertices();
   Status mark_used();
@@ -74,6 +79,7 @@ class Flattener {
   [[nodiscard]] RoundedCorner rounded_corner(unsigned vertex) const;
 
   const ImportOptions& options_;
+  const double loss_in_text_;
   const std::string& file_;
   std::vector<T>& positions_;
   ImportReport& report_;
@@ -82,7 +88,7 @@ class Flattener {
   std::vector<std::uint32_t> remap_;    // for each vertex of the instance: state or number
   std::vector<std::uint32_t> corners_;  // of the current face, as indices into positions_
   std::uint32_t next_face_id_ = 0;
-  double moved_ = 0;
+  double moved_ = 0, moved_by_reader_ = 0;
 
   // The current instance.
   const aiMesh* source_ = nullptr;
@@ -115,6 +121,22 @@ template <class T>
 Vector3d Flattener<T>::place_in_double(unsigned vertex) const {
   const Vector3d source = position_of(source_->mVertices[vertex]);
   return is_identity_ ? source : transform_ * source;
+}
+
+// A coordinate lost half a unit in its last place to f32, but no more than any number of the text.
+template <class T>
+double Flattener<T>::moved_by_reader(unsigned vertex) const {
+  const Vector3d source = position_of(source_->mVertices[vertex]);
+  double squares = 0;
+  for (const std::array<double, 4>& row : transform_.row) {
+    double moved = 0;
+    for (std::size_t from = 0; from < 3; ++from) {
+      const double lost = kRoundoffF32 * std::abs(source[static_cast<int>(from)]);
+      moved += std::abs(row[from]) * std::min(lost, loss_in_text_);
+    }
+    squares += moved * moved;
+  }
+  return std::sqrt(squares);
 }
 
 template <class T>
@@ -193,6 +215,9 @@ void Flattener<T>::weld_used() {
     remap_[vertex] = welder_.add(place(vertex));
     if (std::is_same_v<T, float> && !is_identity_) {
       moved_ = std::max(moved_, moved_by_f32(place_in_double(vertex)));
+    }
+    if (loss_in_text_ > 0) {
+      moved_by_reader_ = std::max(moved_by_reader_, moved_by_reader(vertex));
     }
   }
   report_.vertices_welded += used - (positions_.size() / 3 - before);
@@ -280,6 +305,18 @@ Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses
   return {};
 }
 
+// What is too little to be told is told of neither.
+template <class T>
+void state_moves(const Flattener<T>& flattener, Imported& out) {
+  const double unnoticed = unnoticed_move(out.mesh.positions);
+  const double moved = flattener.moved() + flattener.moved_by_reader();
+  if (moved <= unnoticed) return;
+  const bool is_of_reader = flattener.moved_by_reader() > unnoticed;
+  out.report.f32_loss = is_of_reader ? F32Loss::kReader : F32Loss::kNodes;
+  out.report.moved_by_f32 = std::max(out.report.moved_by_f32, moved);
+  out.mesh.moved_by_f32 = moved;
+}
+
 }  // namespace
 
 void free_attributes(aiScene& scene) {
@@ -300,13 +337,11 @@ Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances
   if (positions.precision == Precision::kF32) {
     Flattener<float> flattener(context, positions.f32, out);
     status = flatten(scene, instances, uses, context, flattener, materials, out.user_data);
-    if (flattener.moved() > unnoticed_move(positions)) {
-      out.report.moved_by_f32 = out.mesh.moved_by_f32 = flattener.moved();
-      out.report.moved_by_nodes = true;
-    }
+    state_moves(flattener, out);
   } else {
     Flattener<double> flattener(context, positions.f64, out);
     status = flatten(scene, instances, uses, context, flattener, materials, out.user_data);
+    state_moves(flattener, out);
   }
   if (!status.ok()) return status;
   return check_split_count(out.mesh.faces.size(), context.file);

@@ -25,6 +25,8 @@ struct SourceContext {
   std::span<const MeshMaterials> materials = {};
   /// Likewise, the user data of all faces of each mesh; empty if none is wanted.
   std::span<const std::uint32_t> user_data = {};
+  /// loss_in_text (f32_digits.h) of a text; 0 for files that are none.
+  double loss_in_text = 0;
 };
 
 /// A mesh of aiScene::mMeshes and its transform.

@@ -38,7 +38,6 @@ struct Request {
 // Formats with one mesh and no nodes. Only OBJ has materials.
 struct MeshReader {
   const char* extension;
-  bool keeps_f64;      // with Precision::kF64
   bool has_user_data;  // of faces
   Status (*read)(const SourceFile& source, const ImportOptions& options, Imported& out,
                  FaceMaterials& materials);
@@ -51,10 +50,10 @@ Status without_materials(const SourceFile& source, const ImportOptions& options,
 }
 
 constexpr std::array kMeshReaders = {
-    MeshReader{"obj", true, true, import_obj},
-    MeshReader{"off", true, false, without_materials<import_off>},
-    MeshReader{"ply", true, true, without_materials<import_ply>},
-    MeshReader{"stl", false, false, without_materials<import_stl>},
+    MeshReader{"obj", true, import_obj},
+    MeshReader{"off", false, without_materials<import_off>},
+    MeshReader{"ply", true, without_materials<import_ply>},
+    MeshReader{"stl", false, without_materials<import_stl>},
 };
 
 SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::string& name) {
@@ -71,7 +70,8 @@ SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::
 
 Status measure_digits(const MeshReader& reader, const Request& request, Imported& mesh) {
   const Positions& positions = mesh.mesh.positions;
-  if (!reader.keeps_f64 || positions.precision != Precision::kF32 || !may_have_moved(positions)) {
+  if (positions.precision != Precision::kF32 || mesh.report.has_f32_alone ||
+      !may_have_moved(positions)) {
     return {};
   }
   ImportOptions options = request.options;
@@ -152,6 +152,11 @@ Result<ImportedFile> import_checked(const Request& request) {
       reader != nullptr ? read_mesh(*reader, request, out)
                         : import_with_assimp(request.source, request.options, request.wanted, out);
   if (!status.ok()) return explained(request.source, status.error());
+  std::visit(
+      [&](auto& imported) {
+        imported.report.has_f32_alone &= request.options.precision == Precision::kF64;
+      },
+      out);
   const bool wants_materials = request.options.materials;
   if (auto* mesh = std::get_if<Imported>(&out)) {
     mesh->mesh.name = path.stem().string();

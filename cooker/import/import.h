@@ -67,6 +67,13 @@ struct SkippedFace {
   std::uint32_t mesh = 0;  // the mesh of the face, in SourceScene::meshes, or kNoMesh
 };
 
+/// Why f32 moved vertices, which decides what moves none.
+enum class F32Loss : std::uint8_t {
+  kDigits,  // f32 does not hold those of the file; kF64 does
+  kNodes,   // nor the places of nodes; kF64 and a scene do
+  kReader,  // assimp's reader of a text has f32 alone, whatever the precision
+};
+
 /// All changes that import made to the source.
 struct ImportReport {
   std::size_t meshes = 0;           // mesh instances flattened into the result
@@ -83,11 +90,13 @@ struct ImportReport {
   std::size_t vertices_welded = 0;   // bit-equal duplicates removed
   std::size_t degenerate_faces = 0;  // zero area; kept
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
-  /// OBJ, OFF, PLY and text STL read as f32, and meshes that nodes place in f32: how far a vertex
-  /// was moved by that, at most; 0 if no farther than unnoticed_move (f32_digits.h). The mesh has
-  /// it, too.
+  /// Text and PLY read as f32, and meshes that nodes place in f32: how far a vertex was moved by
+  /// that, at most; 0 if no farther than unnoticed_move (f32_digits.h). The mesh has it, too.
   double moved_by_f32 = 0;
-  bool moved_by_nodes = false;      // moved_by_f32 is of vertices that nodes place
+  F32Loss f32_loss = F32Loss::kDigits;  // of moved_by_f32
+  /// With kF64: it keeps no more than kF32, since the coordinates are f32 in the file or by its
+  /// reader, and nodes, if there are any, place each vertex on f32, too.
+  bool has_f32_alone = false;
   bool has_no_materials = false;    // with ImportOptions::materials: no face has one
   bool has_no_groups = false;       // with kGroups: all faces are in the group without a name
   bool has_half_face = false;       // OBJ: that line is a face of two corners or fewer, left out

@@ -30,10 +30,12 @@ Status import_ply(const SourceFile& source, const ImportOptions& options, Import
       return in_file(source.title(), status.error());
   }
 
-  const bool has_doubles = std::any_of(
-      layout.xyz.begin(), layout.xyz.end(),
-      [](const PlyProperty* coordinate) { return coordinate->type == PlyType::kFloat64; });
-  if (options.keep_doubles && has_doubles && options.precision == Precision::kF32) {
+  const auto counts = [&layout](PlyType type) {
+    return std::count_if(layout.xyz.begin(), layout.xyz.end(),
+                         [type](const PlyProperty* each) { return each->type == type; });
+  };
+  if (options.keep_doubles && counts(PlyType::kFloat64) > 0 &&
+      options.precision == Precision::kF32) {
     ImportOptions keeping = options;
     keeping.precision = Precision::kF64;
     Imported kept;
@@ -44,6 +46,9 @@ Status import_ply(const SourceFile& source, const ImportOptions& options, Import
     }
   }
 
+  // A text has the digits that it has, whatever type it states.
+  out.report.has_f32_alone =
+      counts(PlyType::kFloat32) == 3 && layout.header.form != PlyHeader::Form::kText;
   const std::string& file = source.title();
   return read_into(*stream, source, options, out,
                    [&]<class T>(std::vector<T>& positions) -> Status {

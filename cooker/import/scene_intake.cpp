@@ -162,7 +162,7 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
   const std::size_t skipped_before = imported.report.skipped.size();
   const SourceContext context{context_.options,
                               fmt::format("{}: mesh of '{}'", context_.file, placement.name),
-                              context_.materials, context_.user_data};
+                              context_.materials, context_.user_data, context_.loss_in_text};
   std::vector<MeshInstance> parts;
   for (const unsigned part : placement.meshes) parts.push_back({part, Transform()});
   std::vector<FaceRun> runs;

@@ -32,6 +32,7 @@ Status import_stl(const SourceFile& source, const ImportOptions& options, Import
     return Error{Errc::kImportFailed,
                  file + ": no STL file: a text that does not begin with 'solid'"};
   }
+  out.report.has_f32_alone = !is_text;
   return read_into(*stream, source, options, out,
                    [&]<class T>(std::vector<T>& positions) -> Status {
                      StlMesh<T> mesh(file, options, positions, out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads text STL word by word, in the precision of binary STL. Line ends matter only after "solid"
+// Reads text STL word by word. Line ends matter only after "solid"
 // and "endsolid", which are followed by a name of any words.
 #include "cooker/import/text_stl.h"
 
@@ -60,9 +60,9 @@ class Reader {
 
   // A number of a normal or of a corner.
   Status take_number(std::string_view given) {
-    const std::optional<float> number = read_number<float>(given);
+    const std::optional<T> number = read_number<T>(given);
     if (!number) return failure(fmt::format("'{}' is no number", given));
-    if (is_corner_ && corners_ <= 3) corner_[corners_ - 1][3 - numbers_left_] = T{*number};
+    if (is_corner_ && corners_ <= 3) corner_[corners_ - 1][3 - numbers_left_] = *number;
     --numbers_left_;
     return {};
   }

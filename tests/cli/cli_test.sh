@@ -1225,13 +1225,13 @@ expect 0 "$boxtree" cook far.obj -o far.bxt -q --f64
 expect 0 "$boxtree" export far.bxt --triangles -o placed.glb
 for options in '' --exact; do
   expect 0 "$boxtree" cook placed.glb -o placed.bxt -q $options
-  same "$(cat err)" 'boxtree: warning: placed.glb: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 places its nodes in f64, and with --tolerance LENGTH or the tolerance of a profile in few bytes; --scene keeps their places'
+  same "$(cat err)" 'boxtree: warning: placed.glb: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 or a scene (--scene) keeps the places of its nodes, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
   expect 0 "$boxtree" info placed.bxt --json
   jq -e '.trees[0].max_vertex_error > 0.2 and .trees[0].max_vertex_error < 0.3' out >/dev/null
 done
 for command in 'cook -o placed.bxt' 'report -o placed.html --quick --no-times'; do
   expect 5 "$boxtree" $command placed.glb -q --tolerance 0.001
-  same "$(cat err)" 'boxtree: mesh_unsupported: placed.glb: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 places its nodes in f64, cook --scene keeps their places'
+  same "$(cat err)" 'boxtree: mesh_unsupported: placed.glb: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 or a scene (--scene) keeps the places of its nodes'
 done
 for options in --f64 '--f64 --tolerance 0.001' '--scene --tolerance 0.001'; do
   expect 0 "$boxtree" cook placed.glb -o placed.bxt -q $options
@@ -1239,6 +1239,26 @@ for options in --f64 '--f64 --tolerance 0.001' '--scene --tolerance 0.001'; do
   expect 0 "$boxtree" query placed.bxt point --at 459123.4321,5412345.6789,7 --json
   jq -e '.distance - 7 | fabs < 1e-6' out >/dev/null
 done
+
+# Digits of text STL are kept, too. A binary one has none, and of Collada its reader keeps none.
+{
+  printf 'solid far\nfacet normal 0 0 1\nouter loop\nvertex 459123.4321 5412345.6789 0\nvertex 459123.5321 5412345.6789 0\n'
+  printf 'vertex 459123.4321 5412345.7789 0\nendloop\nendfacet\nendsolid far\n'
+} >far.stl
+expect 5 "$boxtree" cook far.stl -o stl.bxt -q --tolerance 0.001
+same "$(cat err)" 'boxtree: mesh_unsupported: far.stl: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 keeps all digits'
+expect 0 "$boxtree" cook far.stl -o stl.bxt -q
+grep -q '^boxtree: warning: far.stl: f32 has few digits .* moved a vertex by up to 0.221; cook --f64 keeps all digits, and with' err
+expect 0 "$boxtree" cook far.stl -o stl.bxt -q --f64
+same "$(cat err)" ''
+expect 0 "$boxtree" query stl.bxt point --at 459123.4321,5412345.6789,7 --json
+jq -e '.distance - 7 | fabs < 1e-6' out >/dev/null
+{ printf '\0%.0s' {1..80}; printf '\1\0\0\0'; printf '\0%.0s' {1..12}; printf '\0\0\200\77\0\0\0\0\0\0\0\0'
+  printf '\0\0\0\0\0\0\200\77\0\0\0\0'; printf '\0%.0s' {1..14}; } >binary.stl
+expect 0 "$boxtree" cook binary.stl -o stl.bxt -q --f64
+same "$(cat err)" 'boxtree: warning: binary.stl: its coordinates were read as f32, and --f64 keeps no more'
+expect 0 "$boxtree" cook binary.stl -o stl.bxt -q
+same "$(cat err)" ''
 
 # f64 from the digits of the file to the answer: layers 1e-9 apart, a million units out.
 printf 'v 1000000 0 0\nv 1000001 0 0\nv 1000000 1 0\nv 1000000 0 -1e-9\nv 1000001 0 -1e-9\nv 1000000 1 -1e-9\nf 1 2 3\nf 4 5 6\n' >layers.obj

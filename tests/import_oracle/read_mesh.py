@@ -136,7 +136,6 @@ class Mesh:
         self.polygons = []
         self.points = self.lines = self.empty = 0
         self.has_open_end = False
-        self.is_single = False  # read as f32 in either precision: text STL
         self.notes = []
 
     def note(self, text):
@@ -581,7 +580,6 @@ class Words:
 class StlText(Words):
     def __init__(self, data):
         self.mesh = Mesh()
-        self.mesh.is_single = True
         # Every line is its words; names, which may hold keywords, end with their line.
         super().__init__([words_of(line) for line in texts_of_lines(data)])
         while self.peek() is not None:
@@ -785,9 +783,6 @@ class Taken:
 
     def __init__(self, mesh, precision, skip_bad=False):
         to_bits = f32_bits if precision == "f32" else f64_bits
-        if mesh.is_single:
-            to_bits = f32_bits if precision == "f32" else lambda number: f64_bits(
-                f32_of_bits(f32_bits(number)))
         infinity = 0x7F800000 if precision == "f32" else 0x7FF0000000000000
         self.mesh = mesh
         self.notes = list(mesh.notes)

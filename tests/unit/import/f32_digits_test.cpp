@@ -64,11 +64,79 @@ TEST_F(F32DigitsTest, MeasuresWhatF32MovesOfMeshesThatNodesPlace) {
   const Imported placed = load_placed(far.c_str(), Precision::kF32);
   EXPECT_EQ(placed.report.moved_by_f32, 0.25);
   EXPECT_EQ(placed.mesh.moved_by_f32, 0.25);
-  EXPECT_TRUE(placed.report.moved_by_nodes);
+  EXPECT_EQ(placed.report.f32_loss, F32Loss::kNodes);
   EXPECT_TRUE(check_moved_by_f32(placed.report, 0.25).ok());
   EXPECT_EQ(check_moved_by_f32(placed.report, 0.2).code(), Errc::kMeshUnsupported);
   EXPECT_EQ(load_placed(far.c_str(), Precision::kF64).report.moved_by_f32, 0);
   EXPECT_EQ(load_placed("[4, 8, 0]", Precision::kF32).report.moved_by_f32, 0);
+}
+
+TEST_F(F32DigitsTest, ReadsTheDigitsOfTextStl) {
+  const auto stl = [](const char* x) {
+    return fmt::format(
+        "solid t\nfacet normal 0 0 1\nouter loop\nvertex {0} 5884352 0\n"
+        "vertex {0} 5884353 0\nvertex 487124 5884352 0\nendloop\nendfacet\n"
+        "endsolid t\n",
+        x);
+  };
+  const Imported rounded = load("far.stl", stl("487123.253"));
+  EXPECT_EQ(rounded.report.moved_by_f32, 487123.253 - 487123.25);
+  EXPECT_EQ(rounded.report.f32_loss, F32Loss::kDigits);
+  ImportOptions options;
+  options.precision = Precision::kF64;
+  const Imported whole = load("far.stl", stl("487123.253"), options);
+  EXPECT_EQ(whole.mesh.positions[0][0], 487123.253);
+  EXPECT_EQ(whole.report.moved_by_f32, 0);
+  EXPECT_FALSE(whole.report.has_f32_alone);
+  EXPECT_EQ(load("even.stl", stl("487123.25")).report.moved_by_f32, 0);
+}
+
+std::string collada(const char* x) {
+  return fmt::format(
+      R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" )"
+      R"(version="1.4.1"><library_geometries><geometry id="g"><mesh><source id="s">)"
+      R"(<float_array id="a" count="9">{} 5884352 0 487124 5884352 0 487124 5884353 0)"
+      R"(</float_array><technique_common><accessor source="#a" count="3" stride="3">)"
+      R"(<param name="X" type="float"/><param name="Y" type="float"/>)"
+      R"(<param name="Z" type="float"/></accessor></technique_common></source>)"
+      R"(<vertices id="v"><input semantic="POSITION" source="#s"/></vertices>)"
+      R"(<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p>)"
+      R"(</triangles></mesh></geometry></library_geometries><library_visual_scenes>)"
+      R"(<visual_scene id="w"><node id="n"><instance_geometry url="#g"/></node></visual_scene>)"
+      R"(</library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>)",
+      x);
+}
+
+// Assimp's reader of the text has f32 alone: the warning is of it, whatever the precision.
+TEST_F(F32DigitsTest, MeasuresWhatAReaderOfTextLoses) {
+  for (const Precision precision : {Precision::kF32, Precision::kF64}) {
+    ImportOptions options;
+    options.precision = precision;
+    const Imported far = load("far.dae", collada("487123.253"), options);
+    EXPECT_GE(far.report.moved_by_f32, 487123.253 - 487123.25);
+    EXPECT_LT(far.report.moved_by_f32, 0.006);  // of each coordinate no more than any number lost
+    EXPECT_EQ(far.report.f32_loss, F32Loss::kReader);
+    EXPECT_EQ(load("even.dae", collada("487123.25"), options).report.moved_by_f32, 0);
+  }
+  EXPECT_EQ(loss_in_text("<a b='0.5'>1 16777217 -3.5e-1x</a> 2026-11-26"), 1);
+}
+
+TEST_F(F32DigitsTest, KnowsWhereF64KeepsNoMore) {
+  ImportOptions options;
+  options.precision = Precision::kF64;
+  std::string stl(84, '\0');
+  stl[80] = 1;
+  for (const float x : {0.f, 0.f, 1.f, 0.1f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) {
+    stl.append(reinterpret_cast<const char*>(&x), sizeof(x));
+  }
+  stl.append(2, '\0');
+  EXPECT_TRUE(load("a.stl", stl, options).report.has_f32_alone);
+  EXPECT_FALSE(load("a.stl", stl).report.has_f32_alone);
+  GltfText gltf;
+  gltf.add_mesh("tile", {{{0, 0.25f, 0, 0.5f, 0.25f, 0, 0, 0.625f, 0.01f}}});
+  EXPECT_TRUE(load("a.gltf", gltf.text(R"({"mesh":0})"), options).report.has_f32_alone);
+  const std::string placed = gltf.text(R"({"mesh":0,"translation":[487123.25,5884352,0]})");
+  EXPECT_FALSE(load("b.gltf", placed, options).report.has_f32_alone);
 }
 
 TEST_F(F32DigitsTest, LooksAgainWhereF32CountsInStepsOf16BitsOfTheExtent) {
