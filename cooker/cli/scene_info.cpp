@@ -80,6 +80,14 @@ std::uint32_t instances_left_out(const Scene& scene) {
   return of_source - std::min(of_source, scene.instance_count());
 }
 
+bool profile_left_out(const File& file) {
+  const Bytes bytes = OpenFile::of(file).section(SectionKind::kLeftOut);
+  for (std::size_t i = 0; i < bytes.size() / sizeof(LeftOutRecord); ++i) {
+    if (load<LeftOutRecord>(bytes.data(), i).line > 0) return true;
+  }
+  return false;
+}
+
 QueryKinds layer_queries(const Scene& scene, std::uint32_t layer) {
   return static_cast<QueryKinds>(BoundScene::of(scene).layer(layer).query_kinds);
 }

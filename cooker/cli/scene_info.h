@@ -19,6 +19,9 @@ Result<Json> scene_json(const File& file);
 /// source, so those before the last instance in the file leave gaps.
 [[nodiscard]] std::uint32_t instances_left_out(const Scene& scene);
 
+/// Whether the file names a line of a profile that left something out.
+[[nodiscard]] bool profile_left_out(const File& file);
+
 /// The kinds of queries that instances of a layer answer. Precondition: an instance is in it.
 [[nodiscard]] QueryKinds layer_queries(const Scene& scene, std::uint32_t layer);
 

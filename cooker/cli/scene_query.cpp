@@ -200,6 +200,9 @@ struct Move {
   Pose pose;
 };
 
+// More names are not listed.
+constexpr std::size_t kMostListed = 8;
+
 // A name may not be found because it is misspelt, or names or the instance were left out.
 Error no_instance(const File& file, const Scene& scene, const std::string& name) {
   std::vector<std::string> names;
@@ -222,12 +225,19 @@ Error no_instance(const File& file, const Scene& scene, const std::string& name)
     detail +=
         fmt::format(", and {} or more instances of the source were left out of the file", left_out);
   }
-  const std::string meant = suggestion(name, names);
-  if (!meant.empty()) return {Errc::kInstanceIndex, detail + meant};
-  return {Errc::kInstanceIndex,
-          detail +
-              "; if the source has it, the profile left it out, by leave_out or queries = []: "
-              "cook --why says which line"};
+  if (const std::string meant = suggestion(name, names); !meant.empty()) {
+    return {Errc::kInstanceIndex, detail + meant};
+  }
+  detail += names.size() <= kMostListed
+                ? "; expected " + listed(names)
+                : fmt::format("; info --json lists the {} names", names.size());
+  // Instances after the last one that was kept leave no gap.
+  if (left_out > 0 || profile_left_out(file)) {
+    detail +=
+        "; if the source has it, the profile left it out, by leave_out or queries = []: cook --why "
+        "says which line";
+  }
+  return {Errc::kInstanceIndex, std::move(detail)};
 }
 
 Result<Move> parse_move(const File& file, const Scene& scene, const std::string& text) {

@@ -338,13 +338,20 @@ says 1 'instance_index: parts.bxt: --move: no instance is named "Barrel 8", and 
 says 1 'instance_index: level.bxt: --move: no instance is named "Crata"; did you mean '"'Crate'?" level.bxt $ray --move Crata=0,0,0
 # shellcheck disable=SC2086
 says 1 'instance_index: parts.bxt: --move 52: expected a number from 0 to 51' parts.bxt $ray --move 52=0,0,0
-# The last instance of the source leaves no gap; without a name like it, the profile is the likely cause.
+# The last instance of the source leaves no gap, so the file does not show that a profile left it out.
 printf '[scene]\nsource = "level.gltf"\n[[object]]\nname = "crate"\nmatch = ["Crate"]\nleave_out = true\n' >crateless.toml
 expect 0 "$boxtree" cook --profile crateless.toml -o crateless.bxt --why
 grep -q 'object crate .*crateless.toml:6: leave_out = true' out
 # shellcheck disable=SC2086
-says 1 'instance_index: crateless.bxt: --move: no instance is named "Crate"; if the source has it, the profile left it out, by '\
-'leave_out or queries = []: cook --why says which line' crateless.bxt $ray --move Crate=0,0,0
+says 1 'instance_index: crateless.bxt: --move: no instance is named "Crate"; info --json lists the 52 names' crateless.bxt $ray --move Crate=0,0,0
+# Few names are listed, and a profile is named where it left something out.
+expect 0 "$boxtree" cook --scene big.obj small.obj -o border.bxt
+# shellcheck disable=SC2086
+says 1 'instance_index: border.bxt: --move: no instance is named "Crate"; expected big or small' border.bxt $ray --move Crate=0,0,0
+# shellcheck disable=SC2086
+says 1 'instance_index: parts.bxt: --move: no instance is named "Zeppelin", and 1 or more instances of the source were '\
+'left out of the file; info --json lists the 52 names; if the source has it, the profile left it out, by leave_out or queries = []: '\
+'cook --why says which line' parts.bxt $ray --move Zeppelin=0,0,0
 expect 0 "$boxtree" info parts.bxt --json
 same "$(jq .scene.instances_left_out out)" 1
 expect 0 "$boxtree" info parts.bxt
