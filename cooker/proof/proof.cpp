@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -112,12 +113,10 @@ class Walk {
       if (content.low[k] >= node.box.low[k] && content.high[k] <= node.box.high[k]) continue;
       if (content.low[k] > content.high[k]) break;  // nothing below, already reported
       ++proof_.escapes;
-      add(Errc::kBoxEscape, std::string(node.is_leaf ? "leaf at face " : "node ") +
-                                std::to_string(node.ref.first) + ", axis " + std::to_string(k) +
-                                ": triangles reach [" + std::to_string(content.low[k]) + ", " +
-                                std::to_string(content.high[k]) + "], the box [" +
-                                std::to_string(node.box.low[k]) + ", " +
-                                std::to_string(node.box.high[k]) + "]");
+      add(Errc::kBoxEscape,
+          fmt::format("{} {}, axis {}: triangles reach [{}, {}], the box [{}, {}]",
+                      node.is_leaf ? "leaf at face" : "node", node.ref.first, k, content.low[k],
+                      content.high[k], node.box.low[k], node.box.high[k]));
       break;
     }
     return content;

@@ -53,6 +53,27 @@ TEST(Proof, SharedChildrenOfWideNodesEndIt) {
   EXPECT_FALSE(cooker::verify_file(*file).empty());
 }
 
+// An extent far below that of another axis was told as [0.000000, 0.000000].
+TEST(Proof, SmallNumbersAreTold) {
+  cooker::SourceMesh mesh = test::soup(61, 1);
+  for (std::size_t i = 2; i < mesh.positions.f32.size(); i += 3) mesh.positions.f32[i] *= 1e-20f;
+  FileBytes bytes = test::cook_bytes(mesh, CodecId::kPlainF32);
+  test::edit_records<TreeRecord>(
+      bytes, SectionKind::kTrees,
+      [](TreeRecord& tree, std::uint32_t /*i*/, std::uint32_t /*count*/) {
+        tree.root_high[2] = tree.root_low[2];
+      });
+  const Result<File> file = File::open(Bytes(bytes));
+  ASSERT_TRUE(file.ok());
+  const cooker::Findings findings = cooker::verify_file(*file);
+  const auto escape = std::find_if(findings.begin(), findings.end(), [](const Error& finding) {
+    return finding.code == Errc::kBoxEscape;
+  });
+  ASSERT_NE(escape, findings.end());
+  EXPECT_NE(escape->detail.find("e-"), std::string::npos) << escape->detail;
+  EXPECT_EQ(escape->detail.find("0.000000,"), std::string::npos) << escape->detail;
+}
+
 // 2^31 - 1 faces in a file of a few hundred bytes: nobody makes room for them.
 TEST(Proof, FacesWithoutLeavesAreRefused) {
   for (const CodecId codec : test::all_codecs()) {
