@@ -14,6 +14,7 @@
 #include "cooker/cook_record.h"
 #include "cooker/encode/instance_edges.h"
 #include "cooker/import/f32_digits.h"
+#include "cooker/import/file_error.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/plan.h"
@@ -217,7 +218,7 @@ class Cook {
         search.face_ids = true;
       }
       Result<TriedTree> tried = try_encodings(mesh, search, (*grids)[m]);
-      if (!tried) return in_mesh(m, tried.error());
+      if (!tried) return in_source(m, tried.error());
       edges_.push_back(count_surface_edges(arrays_of(mesh)));
       if (options_.number_by_tree) {
         numbered_ = std::exchange(mesh, {});
@@ -304,6 +305,19 @@ class Cook {
   }
 
   // In a scene, errors name the mesh; without one, users list the meshes themselves.
+  // The same of a mesh that cannot be encoded, with its file and what helps.
+  [[nodiscard]] Error in_source(std::size_t mesh, Error error) const {
+    if (input_.has_top_level) {
+      const Error named = in_mesh(mesh, error);
+      return input_.imports.size() == 1 ? in_file(source_of(input_.imports.front()), named) : named;
+    }
+    const bool is_external = options_.geometry == GeometryId::kExternal;
+    if (is_external && error.code == Errc::kMeshUnsupported && plan_.meshes.size() == 1) {
+      error.detail += "; --write-reordered FILE writes a mesh whose faces they are";
+    }
+    return mesh < input_.imports.size() ? in_file(source_of(input_.imports[mesh]), error)
+                                        : in_file(input_.scene.meshes[mesh].mesh.name, error);
+  }
   [[nodiscard]] Error in_mesh(std::size_t mesh, const Error& error) const {
     if (!input_.has_top_level) return error;
     return {error.code, input_.scene.meshes[mesh].mesh.name + ": " + error.detail};

@@ -11,6 +11,7 @@
 
 #include "cooker/choose/measure.h"
 #include "cooker/choose/search.h"
+#include "cooker/import/file_error.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
@@ -57,7 +58,7 @@ Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry
   options.codec = codec;
   options.geometry = geometry;
   Result<TriedTree> tried = try_encodings(mesh, options);
-  if (!tried) return tried.error();
+  if (!tried) return in_file(mesh.name, tried.error());
   const WorkOfKinds work = tried->contest.candidates.front().work;
   const EncodedTree encoded = tried->take(0);
   const Result<Tree> tree = bind_encoded(encoded);

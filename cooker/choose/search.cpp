@@ -42,16 +42,17 @@ std::uint32_t count_degenerate(const MeshView& mesh, const Frame& frame) {
 Status check_limits(const SourceMesh& mesh, const SearchOptions& options) {
   if (mesh.faces.size() > kMaxFaces || mesh.positions.size() > kMaxVertices) {
     return Error{Errc::kMeshTooLarge,
-                 fmt::format("{}: {} faces, {} vertices, limit {}", mesh.name, mesh.faces.size(),
+                 fmt::format("{} faces, {} vertices, limit {}", mesh.faces.size(),
                              mesh.positions.size(), kMaxFaces)};
   }
   if (options.geometry != GeometryId::kExternal) return {};
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     if (mesh.face_id(i) == i) continue;
-    return Error{Errc::kMeshUnsupported,
-                 fmt::format("{}: geometry cannot stay external: face {} is split or follows a "
-                             "split or skipped face, so the application's faces are not the tree's",
-                             mesh.name, mesh.face_id(i))};
+    return Error{
+        Errc::kMeshUnsupported,
+        fmt::format("geometry cannot stay external: face {} is split or follows a split or "
+                    "skipped face, so the application's faces are not the tree's",
+                    mesh.face_id(i))};
   }
   return {};
 }
@@ -414,8 +415,8 @@ class Search {
     const double tolerance = options_.grid.tolerance.value_or(quantised.max_vertex_error);
     if (quantised.max_vertex_error > tolerance) {
       return Error{Errc::kMeshUnsupported,
-                   fmt::format("{}: double precision so far from zero moves a vertex by {}",
-                               mesh_.name, quantised.max_vertex_error)};
+                   fmt::format("double precision so far from zero moves a vertex by {}",
+                               quantised.max_vertex_error)};
     }
     return quantised;
   }

@@ -79,7 +79,7 @@ struct TriedTree {
 /// Deterministic. Precondition: import's guarantees on meshes. `scene`: the grid shared with other
 /// meshes; by default one for this mesh alone. Errors: kMeshTooLarge; kMeshUnsupported if faces of
 /// an n-gon would have to stay external, or if only a grid is allowed and it cannot be as fine as
-/// requested.
+/// requested. Errors do not name the mesh.
 Result<TriedTree> try_encodings(const SourceMesh& mesh, const SearchOptions& options,
                                 const std::optional<Grid>& scene = {});
 

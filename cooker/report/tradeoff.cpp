@@ -15,6 +15,7 @@
 
 #include "cooker/choose/measure.h"
 #include "cooker/choose/search.h"
+#include "cooker/import/file_error.h"
 #include "cooker/report/scratch_file.h"
 #include "cooker/write/file_writer.h"
 #include "runtime/tree/bound_tree.h"
@@ -247,7 +248,7 @@ class Measurement {
       bound = std::sqrt(3.0) / 2 * std::ldexp(1.0, grid->step_exponent);
     }
     Result<TriedTree> tried = try_encodings(mesh_, search);
-    if (!tried) return tried.error();
+    if (!tried) return in_file(mesh_.name, tried.error());
     const std::vector<Candidate>& candidates = tried->contest.candidates;
     if (!swept) {
       if (Status status = find_exact_answers(*tried); !status) return status;

@@ -865,6 +865,12 @@ expect 0 "$boxtree" query external.bxt point --at 0.5,0.5,3 --mesh cube.obj --js
 same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
 sed 's/^v 1 1 1/v 1 1 2/' cube.obj >other.obj
 expect 3 "$boxtree" query external.bxt point --at 0,0,0 --mesh other.obj
+printf 'v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\n' >pentagon.obj
+expect 5 "$boxtree" cook pentagon.obj -o pentagon.bxt --external -q
+same "$(cat err)" "boxtree: mesh_unsupported: pentagon.obj: geometry cannot stay external: face 0 is split or follows a split or skipped face, so the \
+application's faces are not the tree's; --write-reordered FILE writes a mesh whose faces they are"
+expect 0 "$boxtree" cook pentagon.obj -o pentagon.bxt --external -q --write-reordered parted.obj
+expect 0 "$boxtree" verify pentagon.bxt --mesh parted.obj
 expect 0 "$boxtree" query cube.bxt pair external.bxt --mesh2 cube.obj --json
 same "$(jq -c '.hit' out)" true
 
