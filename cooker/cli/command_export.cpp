@@ -173,9 +173,7 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
                    fmt::format("{}: {}: name the one that it was cooked of with --mesh MESH",
                                input_name(arguments.file), tree.error().detail)};
     }
-    if (!tree) {
-      return Error{tree.code(), arguments.file.string() + ": " + tree.error().detail};
-    }
+    if (!tree) return in_file(arguments.file, naming_mesh(arguments.mesh, tree.error()));
     trees.push_back(std::move(*tree));
   }
   return trees;

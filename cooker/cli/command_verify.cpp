@@ -80,7 +80,7 @@ Verification verify_one(const std::filesystem::path& path, const std::filesystem
   }
   Verification verification;
   for (const Error& finding : verify_file(*file, arrays)) {
-    verification.findings.push_back(in_file(input_name(path), finding));
+    verification.findings.push_back(in_file(input_name(path), naming_mesh(mesh, finding)));
   }
   if (!verification.findings.empty()) verification.status = kExitBadInput;
   verification.summary =

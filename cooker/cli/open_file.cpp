@@ -73,4 +73,12 @@ Result<std::uint32_t> find_tree(const File& file, const std::string& which) {
   return Error{named.code(), fmt::format("no tree is called \"{}\"{}", which, meant)};
 }
 
+Error naming_mesh(const std::filesystem::path& mesh, const Error& error) {
+  if (error.code != Errc::kExternalMeshMismatch || mesh.empty()) return error;
+  return {error.code,
+          fmt::format("{}: {} is not what the tree was cooked of; name that mesh, or the one that "
+                      "--write-reordered wrote with the tree",
+                      error.detail, input_name(mesh))};
+}
+
 }  // namespace boxtree::cooker

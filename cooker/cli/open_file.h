@@ -34,4 +34,8 @@ Result<OpenedFile> open_file(const std::filesystem::path& path);
 /// number. A number need not be in the file: binding finds that out. Error: kTreeIndex.
 Result<std::uint32_t> find_tree(const File& file, const std::string& which);
 
+/// The same error; of a mesh that is not the tree's (kExternalMeshMismatch) it names the one that
+/// was given and the one that is needed.
+[[nodiscard]] Error naming_mesh(const std::filesystem::path& mesh, const Error& error);
+
 }  // namespace boxtree::cooker

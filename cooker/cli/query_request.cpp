@@ -17,6 +17,7 @@
 #include "cooker/cli/shape_answers.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/tree_kinds.h"
+#include "cooker/import/file_error.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/text/nearest_name.h"
@@ -420,7 +421,7 @@ Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
     return Error{tree.code(), fmt::format("{}: {}: name the one that it was cooked of with {} MESH",
                                           name, tree.error().detail, mesh_option)};
   }
-  if (!tree) return Error{tree.code(), name + ": " + tree.error().detail};
+  if (!tree) return in_file(name, naming_mesh(mesh, tree.error()));
   const Result<QueryKinds> kinds = kinds_of_tree(*file, *index);
   if (!kinds) return kinds.error();
   if (which.empty() && file->tree_count() > 1) {

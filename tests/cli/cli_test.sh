@@ -864,7 +864,11 @@ grep -q '^boxtree: external_mesh_needed: external_scene.bxt: tree 0: no mesh was
 expect 0 "$boxtree" query external.bxt point --at 0.5,0.5,3 --mesh cube.obj --json
 same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
 sed 's/^v 1 1 1/v 1 1 2/' cube.obj >other.obj
-expect 3 "$boxtree" query external.bxt point --at 0,0,0 --mesh other.obj
+for command in 'query external.bxt point --at 0,0,0' 'export external.bxt -o no.obj' 'verify external.bxt'; do
+  expect 3 "$boxtree" $command --mesh other.obj
+  same "$(cat err)" 'boxtree: external_mesh_mismatch: external.bxt: tree 0: expected 6 faces of f32 positions, given 7 of f32: '\
+'other.obj is not what the tree was cooked of; name that mesh, or the one that --write-reordered wrote with the tree'
+done
 printf 'v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\n' >pentagon.obj
 expect 5 "$boxtree" cook pentagon.obj -o pentagon.bxt --external -q
 same "$(cat err)" "boxtree: mesh_unsupported: pentagon.obj: geometry cannot stay external: face 0 is split or follows a split or skipped face, so the \
