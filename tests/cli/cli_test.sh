@@ -450,6 +450,10 @@ missing() {
   grep -qxF "boxtree: file_not_found: missing: no such file; check the name, which is relative to the current folder, $PWD" err ||
     { echo "$*"; cat err; exit 1; }
 }
+for command in 'cook -o none.bxt' info verify; do
+  expect 2 "$boxtree" $command ''
+  same "$(cat err)" 'boxtree: file_not_found: expected the name of a file, found an empty one'
+done
 missing cook missing -o none.bxt
 missing cook missing cube.obj -o none.bxt
 missing cook cube.obj --costs missing -o none.bxt
