@@ -40,7 +40,8 @@ install_missing() {
 
 if [ "${BASH_SOURCE[0]}" = "$0" ]; then
   set -euo pipefail
-  refuse() { echo "samples/packages.sh: $1; usage: samples/packages.sh install LIST|PACKAGE..." >&2; exit 1; }
+  lists=$(sed -n 's/^\([A-Z]*_PACKAGES\)=.*/ \1/p' "$0" | tr -d '\n')
+  refuse() { echo "samples/packages.sh: $1; usage: samples/packages.sh install LIST|PACKAGE..., with the lists$lists" >&2; exit 1; }
   [ "${1-}" = install ] || refuse "expected install, found '${1-}'"
   [ $# -gt 1 ] || refuse "nothing to install"
   packages=()

@@ -41,5 +41,10 @@ refused() {
 refused "expected install, found ''"
 refused "expected install, found 'cmake'" cmake
 refused "nothing to install" install
+grep -q 'LIST|PACKAGE..., with the lists BUILD_PACKAGES SAMPLE_PACKAGES TEST_PACKAGES ' "$work/err" || fail "names no lists"
+read -ra lists < <(sed -n 's/.*with the lists //p' "$work/err")
+for list in "${lists[@]}"; do
+  grep -q "^$list=" samples/packages.sh || fail "no list $list"
+done
 refused "no list 'BILD_PACKAGES'" install BILD_PACKAGES
 [ ! -s "$work/called" ] || fail "installs what it refuses"
