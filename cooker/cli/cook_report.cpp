@@ -377,11 +377,9 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
         import.has_half_face ? " and is half a face, which is left out" : "", kAsIfCut));
   }
   if (import.moved_by_f32 > 0) {
-    std::string remedy = remedy_of(import.f32_loss);
+    std::string remedy = cook_remedy_of(import.f32_loss);
     if (import.f32_loss != F32Loss::kReader) {
-      remedy = fmt::format(
-          "cook {}, and with --tolerance LENGTH or the tolerance of a profile in few bytes",
-          remedy);
+      remedy += ", and with --tolerance LENGTH or the tolerance of a profile in few bytes";
     }
     warnings.push_back(
         fmt::format("{}: f32 has few digits for a mesh so far from the origin and moved a vertex "

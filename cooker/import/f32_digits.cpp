@@ -85,6 +85,10 @@ std::string remedy_of(F32Loss loss) {
          "digits";
 }
 
+std::string cook_remedy_of(F32Loss loss) {
+  return (loss == F32Loss::kReader ? "" : "cook ") + remedy_of(loss);
+}
+
 Status check_moved_by_f32(const ImportReport& report, double tolerance) {
   if (report.moved_by_f32 <= tolerance) return {};
   return Error{Errc::kMeshUnsupported,

@@ -30,8 +30,10 @@ namespace boxtree::cooker {
 /// The largest distance of a number in a text from the nearest f32, whatever the number is of.
 [[nodiscard]] double loss_in_text(std::string_view text);
 
-/// What moves no vertex, after "cook ": "--f64 keeps all digits".
+/// What moves no vertex: "--f64 keeps all digits".
 [[nodiscard]] std::string remedy_of(F32Loss loss);
+/// The same where another command is run: "cook --f64 keeps all digits".
+[[nodiscard]] std::string cook_remedy_of(F32Loss loss);
 
 /// kMeshUnsupported if f32 has moved a vertex farther than a tolerance, which is for what the
 /// source says.

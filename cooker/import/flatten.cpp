@@ -312,7 +312,7 @@ void state_moves(const Flattener<T>& flattener, Imported& out) {
   const double moved = flattener.moved() + flattener.moved_by_reader();
   if (moved <= unnoticed) return;
   const bool is_of_reader = flattener.moved_by_reader() > unnoticed;
-  out.report.f32_loss = is_of_reader ? F32Loss::kReader : F32Loss::kNodes;
+  out.report.f32_loss = out.mesh.f32_loss = is_of_reader ? F32Loss::kReader : F32Loss::kNodes;
   out.report.moved_by_f32 = std::max(out.report.moved_by_f32, moved);
   out.mesh.moved_by_f32 = moved;
 }

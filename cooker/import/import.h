@@ -67,13 +67,6 @@ struct SkippedFace {
   std::uint32_t mesh = 0;  // the mesh of the face, in SourceScene::meshes, or kNoMesh
 };
 
-/// Why f32 moved vertices, which decides what moves none.
-enum class F32Loss : std::uint8_t {
-  kDigits,  // f32 does not hold those of the file; kF64 does
-  kNodes,   // nor the places of nodes; kF64 and a scene do
-  kReader,  // assimp's reader of a text has f32 alone, whatever the precision
-};
-
 /// All changes that import made to the source.
 struct ImportReport {
   std::size_t meshes = 0;           // mesh instances flattened into the result

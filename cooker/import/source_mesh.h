@@ -21,6 +21,13 @@ enum class Precision : std::uint8_t { kF32, kF64 };
   return precision == Precision::kF32 ? "f32" : "f64";
 }
 
+/// Why f32 moved vertices, which decides what moves none.
+enum class F32Loss : std::uint8_t {
+  kDigits,  // f32 does not hold those of the file; kF64 does
+  kNodes,   // nor the places of nodes; kF64 and a scene do
+  kReader,  // assimp's reader of a text has f32 alone, whatever the precision
+};
+
 /// Positions of all vertices, three numbers each, in object space (the units of the source). Only
 /// the array of `precision` is filled.
 struct Positions {
@@ -69,6 +76,7 @@ struct SourceMesh {
   std::vector<std::array<std::uint32_t, 4>> polygon_corners;
   /// How far f32 moved a vertex at most from what the source says (ImportReport::moved_by_f32).
   double moved_by_f32 = 0;
+  F32Loss f32_loss = F32Loss::kDigits;
 
   [[nodiscard]] std::uint32_t face_id(std::size_t face) const;
   [[nodiscard]] std::size_t triangle_count() const {

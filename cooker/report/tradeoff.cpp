@@ -165,6 +165,7 @@ class Measurement {
     out_.diagonal = bounds_of(mesh).diagonal().norm();
     out_.is_f64 = mesh.positions.precision == Precision::kF64;
     out_.moved_by_f32 = mesh.moved_by_f32;
+    out_.f32_loss = mesh.f32_loss;
     out_.tolerance = options.tolerance;
     if (options.tolerance) {
       out_.tolerance_left = in_diagonals(tolerance_left(*options.tolerance, mesh));

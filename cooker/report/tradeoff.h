@@ -84,12 +84,13 @@ struct MeshTradeoff {
   std::string file_name = {};  // of its source, without folders; empty if it has none
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
-  double diagonal = 0;              // of the bounds, object space
-  bool is_f64 = false;              // its positions
-  double moved_by_f32 = 0;          // SourceMesh::moved_by_f32
-  std::optional<double> tolerance;  // of TradeoffOptions
-  double tolerance_left = 0;        // of it for moves of the surface; share of the diagonal
-  ByteParts source;                 // positions and 32-bit corners, as in an application
+  double diagonal = 0;                  // of the bounds, object space
+  bool is_f64 = false;                  // its positions
+  double moved_by_f32 = 0;              // SourceMesh::moved_by_f32
+  F32Loss f32_loss = F32Loss::kDigits;  // of moved_by_f32
+  std::optional<double> tolerance;      // of TradeoffOptions
+  double tolerance_left = 0;            // of it for moves of the surface; share of the diagonal
+  ByteParts source;                     // positions and 32-bit corners, as in an application
   std::vector<TradePoint> points;
   bool timed = false;
   TimedWork timed_work;  // all queries of `times`

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "cooker/choose/workload.h"
+#include "cooker/import/f32_digits.h"
 #include "cooker/report/approximate_page.h"
 #include "cooker/report/tradeoff_advice.h"
 #include "cooker/text/counted.h"
@@ -208,8 +209,8 @@ PageSection advice_section(const MeshTradeoff& mesh) {
         {"Far from the origin.",
          fmt::format(
              "Reading the mesh as f32 moved a vertex by up to {}. Moves of the surface below "
-             "are from there, a tolerance is of both together, and --f64 keeps all digits.",
-             move_in_words(mesh, mesh.moved_by_f32 / mesh.diagonal))});
+             "are from there, and a tolerance is of both together; {}.",
+             move_in_words(mesh, mesh.moved_by_f32 / mesh.diagonal), remedy_of(mesh.f32_loss))});
   }
   if (std::string disturbance = disturbance_in_words(mesh); !disturbance.empty()) {
     section.conclusions.insert(section.conclusions.begin(),

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/import/f32_digits.h"
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/precision.h"
 #include "cooker/scene/profile_fields.h"
@@ -319,8 +320,9 @@ Status MeshPlanner::decide_precision(std::uint32_t mesh) {
     return Error{
         Errc::kMeshUnsupported,
         fmt::format("{}:{}: {}; f32 moves a vertex of mesh \"{}\" by up to {:.3g}, farther "
-                    "than that; cook --f64 keeps all digits",
-                    profile_.path.string(), line, reason, source.name, source.moved_by_f32)};
+                    "than that; {}",
+                    profile_.path.string(), line, reason, source.name, source.moved_by_f32,
+                    cook_remedy_of(source.f32_loss))};
   }
   if (planned.exact) return {};
   decide(mesh, Aspect::kPrecision, !planned.tolerance, std::move(reason), line);

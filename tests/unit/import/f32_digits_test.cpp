@@ -116,6 +116,7 @@ TEST_F(F32DigitsTest, MeasuresWhatAReaderOfTextLoses) {
     EXPECT_GE(far.report.moved_by_f32, 487123.253 - 487123.25);
     EXPECT_LT(far.report.moved_by_f32, 0.006);  // of each coordinate no more than any number lost
     EXPECT_EQ(far.report.f32_loss, F32Loss::kReader);
+    EXPECT_EQ(far.mesh.f32_loss, F32Loss::kReader);
     EXPECT_EQ(load("even.dae", collada("487123.25"), options).report.moved_by_f32, 0);
   }
   EXPECT_EQ(loss_in_text("<a b='0.5'>1 16777217 -3.5e-1x</a> 2026-11-26"), 1);

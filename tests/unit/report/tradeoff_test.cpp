@@ -253,6 +253,7 @@ TEST(Tradeoff, AToleranceHasTheGridThatCookTakesForIt) {
 TEST(Tradeoff, TellsHowFarF32MovedTheMesh) {
   SourceMesh far = mesh();
   far.moved_by_f32 = 0.25;
+  far.f32_loss = F32Loss::kReader;
   TradeoffReport report;
   report.meshes = {require(measure_tradeoff(far, {true, false}))};
   const MeshTradeoff& made = report.meshes.front();
@@ -266,6 +267,7 @@ TEST(Tradeoff, TellsHowFarF32MovedTheMesh) {
   ASSERT_TRUE(advise(made));
   const std::string page = to_text(tradeoff_page(report));
   EXPECT_NE(page.find("as f32 moved a vertex by up to"), std::string::npos);
+  EXPECT_NE(page.find("its reader has f32 alone"), std::string::npos);
   EXPECT_NE(page.find("No position changes by a single bit of f32."), std::string::npos);
   EXPECT_EQ(to_text(tradeoff_page({.meshes = {counted()}})).find("moved a vertex"),
             std::string::npos);

@@ -445,6 +445,9 @@ TEST_F(PlanTest, RefusesAToleranceThatF32HasExceeded) {
                              "farther than that; cook --f64 keeps all digits"));
   EXPECT_TRUE(refused("[contact]\nstiffness = 1e6\nmass = 1\n").find("toml:2: stiff contact: ") !=
               std::string::npos);
+  scene.meshes[1].mesh.f32_loss = F32Loss::kReader;
+  EXPECT_NE(refused("[scene]\ntolerance = 0.01\n").find("than that; its reader has f32 alone"),
+            std::string::npos);
   plan(scene, "[scene]\ntolerance = 0.012\n");
   plan(scene, "[scene]\nexact = true\n");
   plan(scene, "[scene]\ntolerance = 0.01\nexternal = true\n");
