@@ -167,6 +167,10 @@ function(boxtree_add_cooked_assets)
       message(FATAL_ERROR "boxtree_add_cooked_assets: OPTIONS has '${option}' in one piece; expected options and "
                           "their values in pieces: without quotes, or with ; between them")
     endif()
+    if(option MATCHES "^(-o|--output(=|$)|--depfile(=|$))")
+      message(FATAL_ERROR "boxtree_add_cooked_assets: OPTIONS has '${option}', but the function names what it writes: "
+                          "NAME.bxt and NAME.bxt.d in OUTPUT_DIR")
+    endif()
   endforeach()
   # Builds run several cooks at once, each of which would take all processors.
   set(jobs --jobs 1)

@@ -215,6 +215,13 @@ find_package(boxtree CONFIG REQUIRED)
 add_custom_target(all_assets)
 boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj OPTIONS "--grid-bits 12")
 CMAKE
+for option in '-o x.bxt' -ox.bxt --output=x.bxt '--depfile x.d'; do
+  refused "OPTIONS has '${option%% *}', but the function names what it writes: NAME.bxt and NAME.bxt.d in OUTPUT_DIR" <<CMAKE
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj OPTIONS --exact $option)
+CMAKE
+done
 
 # A mesh that is not there is a warning when CMake configures, unless a command makes it, before or after the call.
 project meshes NONE <<'CMAKE'
