@@ -7,7 +7,7 @@
 #   --count N    queries of each kind and file [15000: 10^5 in all]; those of a number that is not pinned are
 #                compared with what the first platform answered
 #   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake;
-#                scalar: without vectors; O0, clang, libcxx: other compilers and libraries;
+#                scalar: without vectors; sse4, avx512: walks by other vectors; O0, clang, libcxx: other compilers and libraries;
 #                windows: x86-64 under Wine; arm64, armhf, riscv64, i386: under qemu or as they are;
 #                wasm: under Node
 # Environment: BOXTREE_BUILD, where boxtree is built, whose command line cooks [build]
@@ -17,7 +17,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 source=$(cd "$here/../.." && pwd)
 build=${BOXTREE_BUILD:-$source/build}
 work=$build/platforms
-known="c amalgamation scalar O0 clang libcxx windows arm64 armhf riscv64 i386 wasm"
+known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows arm64 armhf riscv64 i386 wasm"
 count=15000
 if [ "${1:-}" = --count ]; then
   count=$2
@@ -138,6 +138,17 @@ platform_scalar() {
   built scalar -DBOXTREE_SIMD=OFF || return 0
   static scalar gcc -lstdc++ -lm || return 0
   conclude scalar "$work/scalar/digests"
+}
+platform_sse4() { by_vectors sse4 sse4; }
+platform_avx512() {
+  grep -q avx512_vbmi2 /proc/cpuinfo || { skip avx512 "this processor has none"; return 0; }
+  by_vectors avx512 "sse4;avx2;avx512"
+}
+# by_vectors NAME SETS
+by_vectors() {
+  built "$1" -DBOXTREE_INSTRUCTION_SETS="$2" || return 0
+  static "$1" gcc -lhwy -lstdc++ -lm || return 0
+  conclude "$1" "$work/$1/digests"
 }
 platform_O0() {
   built O0 -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 || return 0
