@@ -90,9 +90,9 @@ class Amalgamation:
             if file.startswith("runtime/scene/"):
                 self.queries[file] = {"scene"}
         self.queries.update(OF_QUERIES)
-        for file in self.queries.keys() - {p.relative_to(source).as_posix() for p in source.glob("runtime/*/*.cpp")}:
-            if not file.startswith("runtime/files"):
-                raise SystemExit(f"amalgamate: runtime/CMakeLists.txt names {file}, which is not there")
+        known = {p.relative_to(source).as_posix() for p in source.glob("runtime/*/*.cpp")}
+        if not self.queries or not known.issuperset(self.queries):
+            raise SystemExit(f"amalgamate: not in runtime/: {sorted(self.queries.keys() - known)}, of the lists sources_of_* in CMake")
         self.parts = [p.relative_to(source).as_posix() for folder in FOLDERS
                       for p in sorted((source / folder).glob("*.cpp"))]
         self.parts = [*OWN, *(part for part in self.parts if not LEFT_OUT.search(part))]
@@ -169,9 +169,10 @@ class Amalgamation:
                 self.system.add(line)
         guard = self.guards[path]
         text = "\n".join(body).strip("\n")
-        # An #if that was around includes alone.
-        text = re.sub(r"^#if [^\n]*\n(?:\s*\n)*#endif[^\n]*\n?", "", text, flags=re.MULTILINE)
-        text = re.sub(r"^#if [^\n]*\n(?:\s*\n)*#endif[^\n]*\n?", "", text, flags=re.MULTILINE)
+        # Takes out each #if that was around includes alone, the inner ones first.
+        removed = 1
+        while removed:
+            text, removed = re.subn(r"^#if [^\n]*\n(?:\s*\n)*#endif[^\n]*\n?", "", text, flags=re.MULTILINE)
         self.out.append(f"\n// ---- {path}")
         if "*" not in guard:
             macros = " || ".join(f"BOXTREE_HAS_{q.upper()}_QUERIES" for q in sorted(guard))
