@@ -202,6 +202,8 @@ def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     source, output = map(pathlib.Path, sys.argv[1:])
+    if not (source / "runtime/CMakeLists.txt").is_file():
+        sys.exit(f"amalgamate.py: {source}: no sources of boxtree; SOURCE_DIR is the folder that has runtime/ in it")
     text = Amalgamation(source).text()
     output.mkdir(parents=True, exist_ok=True)
     (output / "boxtree_amalgamated.cpp").write_text(text, encoding="utf-8")

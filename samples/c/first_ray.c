@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
+  if (argument_count != 2) return fprintf(stderr, "usage: first_ray LEVEL.bxt\n"), 2;
 
   bxt_file* file;
   bxt_tree* tree;

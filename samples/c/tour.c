@@ -131,7 +131,7 @@ int main(int argument_count, char** arguments) {
   const bxt_allocator own = {sizeof own, &in_use, allocate, give_back};
   bxt_file *level_file, *crate_file;
   bxt_tree *level, *crate;
-  if (argument_count != 3) return 2;
+  if (argument_count != 3) return fprintf(stderr, "usage: tour LEVEL.bxt CRATE.bxt\n"), 2;
   level = open_tree(arguments[1], &own, &level_file);
   crate = open_tree(arguments[2], &own, &crate_file);
   query_tree(level);
