@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // In the amalgamation, in place of Eigen: the few of its types and operations that the runtime
-// uses, by the names that they have there, evaluated at once. Numbers are the same to the bit:
-// every operation is one of a coefficient, but for sums, which Eigen takes of halves: x + (y + z)
-// of three terms.
+// uses, by the names that they have there, evaluated at once. Each operation is one of a
+// coefficient, so numbers are the same to the bit; sums, whose order Eigen chooses, are
+// primitive/vector3.h's.
 #pragma once
 
 #include <array>
@@ -21,18 +21,6 @@ enum TransformMode { Affine = 1 };
 template <class T, int kRows, int kColumns, int kOptions = ColMajor>
 class Matrix;
 
-namespace subset {
-
-// The sum of `count` terms from `first` on, term(i), of halves.
-template <class Term>
-constexpr auto sum_of(const Term& term, Index first, Index count) {
-  if (count == 1) return term(first);
-  const Index half = count / 2;
-  return sum_of(term, first, half) + sum_of(term, first + half, count - half);
-}
-
-}  // namespace subset
-
 /// Coefficients that are compared or added to, one by one.
 template <class T, int kRows, int kColumns>
 class Array {
@@ -44,13 +32,6 @@ class Array {
     }
     return true;
   }
-  [[nodiscard]] bool any() const {
-    for (const T& x : at) {
-      if (x) return true;
-    }
-    return false;
-  }
-
   template <class Test>
   [[nodiscard]] Array<bool, kRows, kColumns> where(const Test& test) const {
     Array<bool, kRows, kColumns> out;
@@ -273,19 +254,6 @@ class Matrix {
     }
     return (*this)[*place];
   }
-  [[nodiscard]] constexpr T sum() const {
-    return subset::sum_of([this](Index i) { return (*this)[i]; }, 0, kSize);
-  }
-  /// Of vectors, be they rows or columns.
-  template <int kR, int kC, int kOther>
-  [[nodiscard]] constexpr T dot(const Matrix<T, kR, kC, kOther>& other) const {
-    static_assert(kR * kC == kSize);
-    return subset::sum_of([&](Index i) { return (*this)[i] * other[i]; }, 0, kSize);
-  }
-  [[nodiscard]] constexpr T squaredNorm() const {
-    return subset::sum_of([this](Index i) { return (*this)[i] * (*this)[i]; }, 0, kSize);
-  }
-  [[nodiscard]] T norm() const { return std::sqrt(squaredNorm()); }
   [[nodiscard]] constexpr Matrix cross(const Matrix& b) const {
     const Matrix& a = *this;
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -309,43 +277,6 @@ class Matrix {
     return out;
   }
   constexpr Matrix(const Array<T, kRows, kColumns>& array) : at_(array.at) {}
-
-  /// Of each row.
-  class Rows {
-   public:
-    constexpr explicit Rows(const Matrix& matrix) : matrix_(matrix) {}
-    [[nodiscard]] constexpr Matrix<T, kRows, 1> sum() const {
-      Matrix<T, kRows, 1> out;
-      for (Index i = 0; i < kRows; ++i) out[i] = matrix_.row(i).sum();
-      return out;
-    }
-    [[nodiscard]] Matrix<T, kRows, 1> norm() const {
-      Matrix<T, kRows, 1> out;
-      for (Index i = 0; i < kRows; ++i) out[i] = matrix_.row(i).norm();
-      return out;
-    }
-
-   private:
-    const Matrix& matrix_;
-  };
-  [[nodiscard]] constexpr Rows rowwise() const { return Rows(*this); }
-
-  /// By cofactors.
-  [[nodiscard]] constexpr Matrix inverse() const {
-    static_assert(kRows == 3 && kColumns == 3);
-    const Matrix& m = *this;
-    const auto cofactor = [&m](Index i, Index j) {
-      const Index i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-      return m(i1, j1) * m(i2, j2) - m(i1, j2) * m(i2, j1);
-    };
-    const T determinant = subset::sum_of([&](Index i) { return cofactor(i, 0) * m(i, 0); }, 0, 3);
-    const T factor = T(1) / determinant;
-    Matrix out;
-    for (Index i = 0; i < 3; ++i) {
-      for (Index j = 0; j < 3; ++j) out(j, i) = cofactor(i, j) * factor;
-    }
-    return out;
-  }
 
   constexpr Matrix& operator+=(const Matrix& b) { return *this = *this + b; }
   constexpr Matrix& operator-=(const Matrix& b) { return *this = *this - b; }
@@ -396,20 +327,6 @@ class Matrix {
 
   std::array<T, static_cast<std::size_t>(kSize)> at_;
 };
-
-/// A matrix times a matrix or vector.
-template <class T, int kRows, int kInner, int kColumns, int kA, int kB>
-constexpr Matrix<T, kRows, kColumns> operator*(const Matrix<T, kRows, kInner, kA>& a,
-                                               const Matrix<T, kInner, kColumns, kB>& b) {
-  Matrix<T, kRows, kColumns> out;
-  for (Index row = 0; row < kRows; ++row) {
-    for (Index column = 0; column < kColumns; ++column) {
-      out(row, column) =
-          subset::sum_of([&](Index i) { return a(row, i) * b(i, column); }, 0, kInner);
-    }
-  }
-  return out;
-}
 
 using Vector2d = Matrix<double, 2, 1>;
 using Vector3d = Matrix<double, 3, 1>;
@@ -506,9 +423,6 @@ class Transform {
     Matrix<T, 4, 4>& matrix_;
   };
   Both affine() { return Both(matrix_); }
-  friend Matrix<T, 3, 1> operator*(const Transform& map, const Matrix<T, 3, 1>& point) {
-    return map.linear() * point + map.translation();
-  }
   Matrix<T, 4, 4>& matrix() { return matrix_; }
   [[nodiscard]] const Matrix<T, 4, 4>& matrix() const { return matrix_; }
 
