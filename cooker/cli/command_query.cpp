@@ -200,7 +200,16 @@ class StillSceneWarning {
  public:
   explicit StillSceneWarning(const Arguments& arguments) : arguments_(arguments) {}
 
-  // Once for all lines of a batch.
+  // The answer. Warns once for all lines of a batch; not of a query that has no answer, whose error
+  // says more.
+  Result<Json> told(Result<Json> answer, const Scene& scene, const QueryRequest& request) {
+    if (answer) warn_of(scene, request);
+    return answer;
+  }
+
+ private:
+  enum class Moving { kNothing, kAnswersNoPairs, kAnswersPairs };
+
   void warn_of(const Scene& scene, const QueryRequest& request) {
     if (is_told_ || !std::holds_alternative<ContactsRequest>(request)) return;
     const Moving moving = moving_of(scene);
@@ -213,9 +222,6 @@ class StillSceneWarning {
               : ": no instance that moves is in a layer that answers pairs, so that contacts has "
                 "none to look at: its object of the profile needs \"pair\" among its queries"));
   }
-
- private:
-  enum class Moving { kNothing, kAnswersNoPairs, kAnswersPairs };
 
   static Moving moving_of(const Scene& scene) {
     Moving moving = Moving::kNothing;
@@ -267,15 +273,14 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
     StillSceneWarning still(arguments);
     return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
       if (line.moves.empty()) {
-        still.warn_of(scene->scene, line.request);
-        return answer(scene->file, scene->scene, line.request, others);
+        return still.told(answer(scene->file, scene->scene, line.request, others), scene->scene,
+                          line.request);
       }
       std::vector<std::string> moves = arguments.moves;
       moves.insert(moves.end(), line.moves.begin(), line.moves.end());
       const Result<Scene> moved = move_scene(scene->file, moves);
       if (!moved) return moved.error();
-      still.warn_of(*moved, line.request);
-      return answer(scene->file, *moved, line.request, others);
+      return still.told(answer(scene->file, *moved, line.request, others), *moved, line.request);
     });
   }
   const Result<OpenedTree> tree =
