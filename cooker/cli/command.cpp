@@ -391,6 +391,13 @@ OptionText text_of(const Command& command, const CLI::Option& option) {
   return text;
 }
 
+std::string written(const OptionText& option) {
+  std::string text;
+  for (const std::string& name : option.names) text += (text.empty() ? "" : ", ") + name;
+  if (!option.metavar.empty()) text += (text.empty() ? "" : " ") + option.metavar;
+  return text;
+}
+
 std::vector<OptionText> positionals_of(const Command& command) {
   std::vector<OptionText> texts;
   for (const CLI::Option* option : command.app().get_options()) {

@@ -209,6 +209,9 @@ struct OptionText {
   OptionFacts facts;
 };
 
+/// "-o, --output FILE".
+[[nodiscard]] std::string written(const OptionText& option);
+
 [[nodiscard]] std::vector<OptionText> positionals_of(const Command& command);
 /// Options of the command alone, common ones first.
 [[nodiscard]] std::vector<OptionText> options_of(const Command& command);

@@ -71,11 +71,7 @@ std::string HelpFormatter::make_group(std::string group, bool is_positional,
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool /*is_positional*/) const {
   const OptionText text = text_of(command_of(*app_), *option);
-  std::string name;
-  for (const std::string& each : text.names) name += (name.empty() ? "" : ", ") + each;
-  if (!text.metavar.empty()) name += (name.empty() ? "" : " ") + text.metavar;
-  if (text.repeats) name += "...";
-  return row(name, text.description);
+  return row(written(text) + (text.repeats ? "..." : ""), text.description);
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {

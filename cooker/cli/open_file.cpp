@@ -10,12 +10,21 @@
 
 #include <boxtree/blob.h>
 
+#include "cooker/cli/exit_status.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/system/input_failure.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
 namespace {
+
+// Of what is a file of boxtree and damaged, the remedy behind it.
+Error with_remedy(const Error& error) {
+  const bool is_damaged = error_info(error.code).exit_status == kExitBadInput &&
+                          error.code != Errc::kBadMagic && error.code != Errc::kBlobLimit;
+  if (!is_damaged) return error;
+  return {error.code, error.detail + "; copy the file here again, or cook it again"};
+}
 
 // The same as below, of memory.
 Result<OpenedFile> open_standard_input() {
@@ -24,10 +33,10 @@ Result<OpenedFile> open_standard_input() {
   Result<File> file = File::open(*input);
   if (file) return OpenedFile{std::move(*file)};
   if (file.code() != Errc::kFeatureUnsupported) {
-    return Error{file.code(), "standard input: " + file.error().detail};
+    return with_remedy({file.code(), "standard input: " + file.error().detail});
   }
   Result<File> blob = open_blob(*input);
-  if (!blob) return Error{blob.code(), "standard input: " + blob.error().detail};
+  if (!blob) return with_remedy({blob.code(), "standard input: " + blob.error().detail});
   return OpenedFile{std::move(*blob), input->size()};
 }
 
@@ -43,9 +52,9 @@ Result<OpenedFile> open_file(const std::filesystem::path& path) {
   if (is_standard_stream(path)) return open_standard_input();
   Result<File> mapped = map_file(path);
   if (mapped) return OpenedFile{std::move(*mapped)};
-  if (mapped.code() != Errc::kFeatureUnsupported) return mapped.error();
+  if (mapped.code() != Errc::kFeatureUnsupported) return with_remedy(mapped.error());
   Result<File> blob = open_blob(path);
-  if (!blob) return blob.error();
+  if (!blob) return with_remedy(blob.error());
   std::error_code ignored;
   return OpenedFile{std::move(*blob), std::filesystem::file_size(path, ignored)};
 }

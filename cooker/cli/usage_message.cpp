@@ -150,11 +150,22 @@ std::string meant_output(const Command& command, const std::vector<std::string>&
   return ending.empty() || is_mesh_ending(ending.substr(1)) ? std::string() : inputs.back();
 }
 
+// "--output is required" as "-o, --output FILE is required", which can be typed.
+std::string missing_in_full(const Command& command, const std::string& what) {
+  constexpr std::string_view kIsRequired = " is required";
+  for (const OptionText& option : options_of(command)) {
+    if (!option.names.empty() && what == option.names.back() + std::string(kIsRequired)) {
+      return written(option) + std::string(kIsRequired);
+    }
+  }
+  return what;
+}
+
 // What is missing.
 std::string missing(const Command& command, const std::vector<std::string>& rest,
                     const CLI::Error& error) {
-  const std::string what = error.what();
-  if (what != "--output is required") return what;
+  const std::string what = missing_in_full(command, error.what());
+  if (!what.starts_with("-o, --output ")) return what;
   const std::string output = meant_output(command, rest);
   return output.empty() ? what : what + "; did you mean -o " + output + "?";
 }
@@ -186,8 +197,9 @@ std::string fault(const CLI::App& app, const Command& command, const CLI::Error&
   if (!is_missing && !is_extra) return mismatch(error.what());
   std::vector<std::string> rest = app.remaining(true);
   std::erase(rest, kEndOfOptions);
-  const std::string behind_end = fault_behind_end(command, command_of(app).behind_end(), rest,
-                                                  is_missing ? error.what() : std::string());
+  const std::string behind_end =
+      fault_behind_end(command, command_of(app).behind_end(), rest,
+                       is_missing ? missing_in_full(command, error.what()) : std::string());
   if (!behind_end.empty()) return behind_end;
   if (!rest.empty() && !command.commands().empty()) {
     const std::string word = misspelt_command(command, rest);

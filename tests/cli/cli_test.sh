@@ -495,6 +495,14 @@ got=0
 "$boxtree" verify - <found.bxt 2>err || got=$?
 same "$got" 3
 same "$(head -1 err)" 'boxtree: checksum_mismatch: standard input: section 0 (trees): checksum differs'
+# Found by a newcomer: what cannot be opened at all came without a remedy.
+head -c 300 cube.bxt >short.bxt
+expect 3 "$boxtree" info short.bxt
+grep -q '^boxtree: truncated: short.bxt: the file lacks [0-9]* bytes; copy the file here again, or cook it again$' err
+got=0
+"$boxtree" info - <short.bxt 2>err || got=$?
+same "$got" 3
+grep -q 'standard input: .*; copy the file here again, or cook it again$' err
 # So is what is wrong with a command line: its name is usage, its place the command.
 for words in 'cook cube.obj -o cube.obj' 'cook cube.obj --format ply -o x' 'cook cube.obj -o x --depfile -' \
   'verify cube.bxt found.bxt --mesh cube.obj' 'export cube.bxt -o x.obj --levels 3-' 'export cube.bxt -o cube.bxt' \
@@ -669,7 +677,7 @@ refused_words() {
   expect 1 "$boxtree" "$@"
   same "$(head -1 err)" "boxtree: usage: $message"
 }
-refused_words "cook: --output is required; options come before --, which ends them" cook -- cube.obj -o d.bxt
+refused_words "cook: -o, --output FILE is required; options come before --, which ends them" cook -- cube.obj -o d.bxt
 refused_words "query: 'point' was not expected behind --, where no option and no kind of query stands" \
   query -- cube.bxt point --at 1,2,3
 refused_words "query: 'point' was not expected behind --, where no option and no kind of query stands" \
@@ -711,12 +719,12 @@ expect 0 "$boxtree" cook cube.obj -outpu -q
 expect 0 "$boxtree" cook cube.obj -o utput -j1 -q
 rm utpu utput
 # A file that was meant to be the output.
-refused_words 'cook: --output is required; did you mean -o d.bxt?' cook cube.obj d.bxt
-refused_words 'export: --output is required; did you mean -o d.glb?' export cube.bxt d.glb
+refused_words 'cook: -o, --output FILE is required; did you mean -o d.bxt?' cook cube.obj d.bxt
+refused_words 'export: -o, --output FILE is required; did you mean -o d.glb?' export cube.bxt d.glb
 refused_words 'report: d.html is no mesh; did you mean -o d.html?' report cube.obj d.html
 refused_words 'report: d.csv is no mesh; did you mean --csv d.csv?' report cube.obj d.csv --quick
 refused_words 'report: d.json is no mesh; did you mean --json-out d.json?' report cube.obj d.json
-refused_words 'cook: --output is required' cook cube.obj cube.obj
+refused_words 'cook: -o, --output FILE is required' cook cube.obj cube.obj
 
 # Help says where the options are that it does not show, if there are any, and that command runs.
 for command in cook report 'query pair'; do
@@ -1047,7 +1055,7 @@ expect 1 "$boxtree" query cube.bxt distance - --batch - <cube.bxt
 grep -q 'the file or the batch, not both' err
 expect 1 "$boxtree" query cube.bxt
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0
-grep -q -- '--direction is required' err
+grep -q -- '--direction X,Y,Z is required' err
 expect 2 "$boxtree" query cube.bxt --batch missing.jsonl
 # A batch that cannot be read to its end is no answer.
 expect 2 "$boxtree" query cube.bxt --batch .
