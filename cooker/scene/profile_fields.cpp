@@ -111,8 +111,21 @@ std::optional<Stated<std::string>> Fields::required_text(std::string_view key) {
   auto value = text(key);
   const bool is_there = std::any_of(table_.begin(), table_.end(),
                                     [&](const TomlEntry& entry) { return entry.key == key; });
-  if (!is_there) complaints_.expected(line_, where_, fmt::format("the key \"{}\"", key), "none");
+  if (!is_there) {
+    complaints_.expected(line_, where_, fmt::format("the key \"{}\"", key), found_instead_of(key));
+  }
   return value;
+}
+
+// A key that is probably a misspelling of the one that is missing, or "none".
+std::string Fields::found_instead_of(std::string_view key) const {
+  const std::string meant(key);
+  const auto misspelt = std::find_if(table_.begin(), table_.end(), [&](const TomlEntry& entry) {
+    return !suggestion(entry.key, std::span(&meant, 1)).empty();
+  });
+  return misspelt == table_.end()
+             ? "none"
+             : fmt::format("\"{}\" in line {}", misspelt->key, misspelt->line);
 }
 
 std::optional<std::vector<Stated<std::string>>> Fields::texts(std::string_view key) {

@@ -98,6 +98,7 @@ class Fields {
   void finish();
 
  private:
+  [[nodiscard]] std::string found_instead_of(std::string_view key) const;
   void refuse(const TomlEntry& entry, std::span<const std::string> known);
 
   const TomlTable& table_;

@@ -415,6 +415,8 @@ constexpr ProfileFault kContradictions[] = {
     {"\n[[object]]\nmotion = 'moving'\n",
      "scene.toml:2: [[object]]: expected the key \"name\", found none"},
     {"[[mesh]]\nfile = 'a.obj'\n", "scene.toml:1: [[mesh]]: expected the key \"name\", found none"},
+    {"[[mesh]]\nfile = 'a.obj'\nnmae = 'a'\n",
+     "scene.toml:1: [[mesh]]: expected the key \"name\", found \"nmae\" in line 3"},
     {"[[instance]]\n", "scene.toml:1: [[instance]]: expected the key \"mesh\", found none"},
     {"[scene]\nsource = 'a.gltf'\n[[mesh]]\nname = 'm'\nfile = 'm.obj'\n",
      "scene.toml:5: file: expected no file, as [scene] states a source, found one"},
