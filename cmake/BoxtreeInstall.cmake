@@ -49,6 +49,7 @@ install(FILES ${BOXTREE_INCLUDE_DIR}/boxtree/configuration.h
 if(BOXTREE_BUILD_COOKER)
   install(TARGETS boxtree_cli EXPORT boxtreeCliTargets
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT boxtree_program)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/bazel DESTINATION ${CMAKE_INSTALL_DATADIR}/boxtree COMPONENT boxtree_program)
   install(EXPORT boxtreeCliTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR}
           COMPONENT boxtree_program)
   get_target_property(manual boxtree_cli BOXTREE_MANUAL_DIR)

@@ -212,7 +212,7 @@ boxtree info out/crate.bxt out/levels/yard.bxt | grep -c ', geometry arrays' | g
             {"sh": self.run, "text": self.check_output, "cpp": self.program, "toml": self.profile,
              "make": self.makefile, "ninja": self.ninja,
              # tests/consumer
-             "cmake": lambda *_: None, "makefile": lambda *_: None}[language](page, text, line)
+             "cmake": lambda *_: None, "makefile": lambda *_: None, "starlark": lambda *_: None}[language](page, text, line)
 
 
 def main():

@@ -9,7 +9,7 @@
 #   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake;
 #                scalar: without vectors; sse4, avx512: walks by other vectors; O0, clang, libcxx: other compilers and libraries;
 #                windows: x86-64 under Wine; arm64, armhf, riscv64, i386: under qemu or as they are;
-#                wasm: under Node
+#                wasm: under Node; farm: no queries, but cooks by Bazel (tests/farm)
 # Environment: BOXTREE_BUILD, where boxtree is built, whose command line cooks [build]
 # shellcheck disable=SC2317 # platforms are called by name
 set -euo pipefail
@@ -17,7 +17,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 source=$(cd "$here/../.." && pwd)
 build=${BOXTREE_BUILD:-$source/build}
 work=$build/platforms
-known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows arm64 armhf riscv64 i386 wasm"
+known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows arm64 armhf riscv64 i386 wasm farm"
 count=15000
 if [ "${1:-}" = --count ]; then
   count=$2
@@ -192,6 +192,15 @@ platform_arm64() { emulated arm64 aarch64 aarch64-linux-gnu "g++-aarch64-linux-g
 platform_armhf() { emulated armhf armv7l arm-linux-gnueabihf "g++-arm-linux-gnueabihf qemu-user-static" qemu-arm-static; }
 platform_riscv64() { emulated riscv64 riscv64 riscv64-linux-gnu "g++-riscv64-linux-gnu qemu-user-static" qemu-riscv64-static; }
 platform_i386() { emulated i386 i686 i686-linux-gnu g++-i686-linux-gnu ""; }
+platform_farm() {
+  install_missing bazel-bootstrap nginx-light libnginx-mod-http-dav-ext
+  if "$source/tests/farm/bazel_test.sh" "$build/boxtree" >"$work/farm.log" 2>&1; then
+    echo "PASS farm $(tail -n 1 "$work/farm.log")"
+  else
+    tail -n 5 "$work/farm.log"
+    fail farm "see $work/farm.log"
+  fi
+}
 # The two files of the amalgamation, in $work/NAME.
 amalgamated() { python3 "$source/runtime/c/amalgamate.py" "$source" "$work/$1"; }
 # With no flag of the project, and with contraction of products and sums where the compiler likes it.
