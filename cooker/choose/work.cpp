@@ -81,8 +81,7 @@ Errc run_query(const BoundTree& tree, const Eigen::AlignedBox3d& box, Counts& co
 Errc run_query(const BoundTree& tree, const Eigen::Vector3d& point, Counts& counts) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   WalkBound nodes(tree.node_count());
-  Listening query{
-      PointQuery{tree, nodes, tree.frame().to_tree(point), kAnywhere, {}, Errc::kOk, {}}, &counts};
+  Listening query{PointQuery(tree, nodes, tree.frame().to_tree(point), kAnywhere), &counts};
   const Errc walked = traverse_nearest(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }

@@ -56,7 +56,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   approximation.max_distance *= frame.inverse_scale;
   WalkBound nodes(tree.node_count());
   const double most = approximation.max_distance * approximation.max_distance;
-  PointQuery query{tree, nodes, tree_point, most, {}, Errc::kOk, {}};
+  PointQuery query(tree, nodes, tree_point, most);
   query.approximation = &approximation;
   double left = std::numeric_limits<double>::infinity();  // squared: of what was not visited
   Errc walked;

@@ -17,22 +17,37 @@ Errc find_nearest(const BoundTree& tree, PointQuery& query) {
   return walked != Errc::kOk ? walked : query.error;
 }
 
+QueriedPoint::QueriedPoint(const BoundTree& tree, const Eigen::Vector3d& queried,
+                           double max_distance) noexcept
+    : point(tree.frame().to_tree(queried)) {
+  const double distance = max_distance * tree.frame().inverse_scale;
+  most = distance * distance;
+  if (!(max_distance >= 0)) invalid = "max_distance";
+  if (!is_within_range(point)) invalid = "point";
+}
+
+PointResult described(PointQuery& query) noexcept {
+  query.name_face();
+  if (!query.found) return {};
+  const Frame& frame = query.tree.frame();
+  ClosestPoint found = *query.found;
+  found.point = frame.to_object(found.point);
+  found.distance = std::sqrt(found.distance) * frame.scale;
+  return found;
+}
+
 PointResult closest_point(const Tree& queried, const Eigen::Vector3d& point, double max_distance,
                           const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
-  const Eigen::Vector3d tree_point = tree.frame().to_tree(point);
-  if (!is_within_range(tree_point)) return {Errc::kInvalidQuery, "point"};
-  if (!(max_distance >= 0)) return {Errc::kInvalidQuery, "max_distance"};
-  const double tree_distance = max_distance * tree.frame().inverse_scale;
+  const QueriedPoint in_tree(tree, point, max_distance);
+  if (in_tree.invalid != nullptr) return {Errc::kInvalidQuery, in_tree.invalid};
   QueryWork work(limits);
   WalkBound nodes(tree.node_count(), &work);
-  PointQuery query{tree, nodes, tree_point, tree_distance * tree_distance, {}, Errc::kOk, {}};
-  if (const Errc error = find_nearest(tree, query); error != Errc::kOk) return error;
-  if (!query.found) return {};
-  query.found->point = tree.frame().to_object(query.found->point);
-  query.found->distance = std::sqrt(query.found->distance) * tree.frame().scale;
-  return *query.found;
+  PointQuery query(tree, nodes, in_tree.point, in_tree.most);
+  if (const Errc error = walk_nearest(tree, query); error != Errc::kOk) return error;
+  if (query.error != Errc::kOk) return query.error;
+  return described(query);
 }
 
 }  // namespace boxtree

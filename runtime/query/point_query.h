@@ -44,6 +44,11 @@ struct PlacedPoint {
 
 /// A query of traverse_nearest, in tree space.
 struct PointQuery {
+  /// `most`: the largest squared distance of interest.
+  PointQuery(const BoundTree& queried, WalkBound& bound, const Eigen::Vector3d& at,
+             double most) noexcept
+      : tree(queried), nodes(bound), point(at), best(most) {}
+
   const BoundTree& tree;
   WalkBound& nodes;
   Eigen::Vector3d point;  // tree space
@@ -147,6 +152,18 @@ struct PointQuery {
     tested_lower = std::min(tested_lower, std::max(0.0, lower - off));
   }
 };
+
+/// A caller's point, checked, in tree space.
+struct QueriedPoint {
+  QueriedPoint(const BoundTree& tree, const Eigen::Vector3d& queried, double max_distance) noexcept;
+
+  Eigen::Vector3d point;
+  double most;                    // squared distance
+  const char* invalid = nullptr;  // the argument that is not valid, or null
+};
+
+/// The answer of a query whose walk is over, without an error, in object space.
+[[nodiscard]] PointResult described(PointQuery& query) noexcept;
 
 /// By vectors; see walk_tree.h.
 Errc walk_wide(const BoundTree& tree, PointQuery& query);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Closest-point queries over the wide codecs.
-#include "runtime/primitive/rounding.h"
 #include "runtime/query/best_first.h"
 #include "runtime/query/point_filter.h"
 #include "runtime/query/point_query.h"
@@ -14,7 +13,7 @@
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include "runtime/query/triangle_distance-inl.h"
+#include "runtime/query/point_triangles-inl.h"
 #include "runtime/walk/nearest-inl.h"
 #include "runtime/walk/prefetch-inl.h"
 
@@ -35,11 +34,11 @@ class PointLeaves {
  public:
   PointLeaves(const BoundTree& tree, PointQuery& query, const PointFilter& filter)
       : query_(query), filter_(filter), leaf_(tree) {
-    set_bound();
+    bounds_.set(query.best);
   }
 
   /// Squared distances above it cannot improve the answer.
-  [[nodiscard]] float bound() const { return bound_; }
+  [[nodiscard]] float bound() const { return bounds_.squared; }
 
   /// Whether what is visited next is worth reading ahead: the first face that is found may exclude
   /// the rest.
@@ -53,43 +52,18 @@ class PointLeaves {
       query_.error = leaf_.error();
       return false;
     }
-    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
-      HWY_ALIGN float distance[kWideChildren];
-      std::uint32_t near = 0;
-      for (std::size_t part = 0; part < kParts; ++part) {
-        const FloatVector bound = triangle_distance(filter_, leaf_, group, part);
-        hn::Store(bound, Floats(), distance + part * kLanes);
-        near |= bits_of(hn::Not(hn::Gt(bound, hn::Set(Floats(), distance_)))) << (part * kLanes);
-      }
-      near &= leaf_.lanes(group);
-      while (near != 0) {
-        const std::uint32_t i = take_smallest(near, distance);
-        if (distance[i] > distance_) break;
-        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
-        const bool read = leaf_.with_triangle(
-            lane, [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
-              query_.test(triangle, face, half);
-            });
-        if (!read) {
-          query_.error = leaf_.error();
-          return false;
-        }
-        set_bound();
-      }
-    }
-    return true;
+    const auto prepared = [&](std::size_t group, std::size_t part) {
+      return PreparedTriangles(leaf_, group, part);
+    };
+    if (test_triangles(leaf_, prepared, filter_, query_, bounds_)) return true;
+    query_.error = leaf_.error();
+    return false;
   }
 
  private:
-  void set_bound() {
-    bound_ = PointFilter::above(query_.best);
-    distance_ = float_above(std::sqrt(query_.best)) * static_cast<float>(1 + 2 * kRoundoffF32);
-  }
-
   PointQuery& query_;
   const PointFilter& filter_;
-  float bound_;     // of squared distances
-  float distance_;  // of distances
+  PointBounds bounds_;
   LeafFloats leaf_;
 };
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Batches of rays.
-#include "runtime/primitive/float_state.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/ray_batch_query.h"
-#include "runtime/walk/walk_tree.h"
+#include "runtime/walk/packets.h"
 
 namespace boxtree {
 
@@ -23,16 +22,7 @@ Status answer_all(const Tree& tree, std::span<const Ray> rays, std::span<RayResu
                   FunctionRef<RayResult(const Ray&)> alone) {
   if (results.size() != rays.size()) return invalid_query("results.size()");
   RayBatch batch{BoundTree::of(tree), rays, results, any, wishes, alone};
-  // A packet reads nodes for several rays: what one of them may read cannot be told.
-  const bool is_limited = limits.nodes != QueryLimits().nodes;
-  if constexpr (kHasWideCodecs && kWalksByVectors) {
-    if (!is_limited && has_wide_nodes(batch.tree) && batch.tree.has_float_nodes()) {
-      const DefaultFloatState state;
-      walk_wide(batch);
-      return {};
-    }
-  }
-  for (std::size_t i = 0; i < rays.size(); ++i) batch.answer_alone(i);
+  answer_batch(batch, limits);
   return {};
 }
 

@@ -8,6 +8,7 @@
 
 #include "runtime/query/ray_batch_query.h"
 #include "runtime/query/ray_filter.h"
+#include "runtime/walk/packets.h"
 #include "runtime/walk/targets.h"
 #include "runtime/walk/walk_tree.h"
 
@@ -53,6 +54,8 @@ HWY_INLINE RaySet rays_through(const std::uint8_t* children_of_ray, std::uint32_
 // The rays that are in flight, and what of them does not depend on the codec.
 class RayPacket {
  public:
+  static constexpr std::size_t kMost = kMostRays;
+
   explicit RayPacket(RayBatch& batch) : batch_(batch), set_up_(batch.tree), leaf_(batch.tree) {}
 
   // Takes the rays of the batch from `first` on, `count` of them; those that miss the root box, or
@@ -310,42 +313,11 @@ class PacketWalk {
   std::array<Children, WideCodec<Node>::kDepthLimit> open_;
 };
 
-// How the packets of a batch are walked: together, or each ray by itself as long as they share too
-// little. That is tried again, the more rarely the more often it failed, since rays of one kind
-// follow each other.
-template <class Node>
-class PacketWalks {
- public:
-  PacketWalks(const WideCodec<Node>& codec, const RayBatch& batch, RayPacket& packet)
-      : walk_(batch.tree, codec, packet), always_alone_(batch.any) {}
-
-  void answer(RayPacket& packet) {
-    if (always_alone_ || alone_ != 0) {
-      if (alone_ != 0) --alone_;
-      return packet.walk_alone();
-    }
-    packet.answer(walk_.run());
-    pause_ = walk_.was_shared() ? kFirstPause : std::min(2 * pause_, kLastPause);
-    if (!walk_.was_shared()) alone_ = pause_;
-  }
-
- private:
-  static constexpr std::uint32_t kFirstPause = 4, kLastPause = 128;
-
-  PacketWalk<Node> walk_;
-  const bool always_alone_;
-  std::uint32_t pause_ = kFirstPause;
-  std::uint32_t alone_ = 0;  // the packets that follow and are walked ray by ray
-};
-
 template <class Node>
 Errc walk(const WideCodec<Node>& codec, RayBatch& batch) {
   RayPacket packet(batch);
-  PacketWalks<Node> walks(codec, batch, packet);
-  for (std::size_t first = 0; first < batch.rays.size(); first += kMostRays) {
-    packet.take(first, std::min<std::size_t>(batch.rays.size() - first, kMostRays));
-    if (packet.all() != 0) walks.answer(packet);
-  }
+  PacketWalk<Node> walk(batch.tree, codec, packet);
+  answer_in_packets(batch.rays.size(), packet, walk, batch.any);
   return Errc::kOk;
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/primitive/normal.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/ray_query.h"
+#include "runtime/scene/answer_each.h"
 #include "runtime/scene/nearest_scene_hits.h"
 #include "runtime/scene/scene_line.h"
 #include "runtime/scene/scene_walk.h"
@@ -136,14 +137,6 @@ SceneRayResult plain_hit(const Scene& queried, const Ray& ray, bool stop_at_firs
   const BoundScene& scene = BoundScene::of(queried);
   QueryWork work(limits);
   return one_hit(scene, ray, stop_at_first, {scene, kRayQueries, layers, work}, nullptr);
-}
-
-template <class Answer>
-Status answer_each(std::span<const Ray> rays, std::span<SceneRayResult> results,
-                   const Answer& answer) {
-  if (results.size() != rays.size()) return invalid_query("results.size()");
-  for (std::size_t i = 0; i < rays.size(); ++i) results[i] = answer(rays[i]);
-  return {};
 }
 
 SceneRayResult wanted_hit(const Scene& queried, const Ray& ray, bool stop_at_first,

@@ -3,12 +3,14 @@
 #include <cmath>
 
 #include <boxtree/scene.h>
+#include <boxtree/scene_closest_batch.h>
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/point_query.h"
 #include "runtime/query/shape_query.h"
+#include "runtime/scene/answer_each.h"
 #include "runtime/scene/placed_box.h"
 #include "runtime/scene/scene_walk.h"
 #include "runtime/walk/walk_tree.h"
@@ -136,7 +138,7 @@ struct PointInScene {
       exact.error = placement.distance_error(in_tree.at, point, root_box<double>(tree));
     }
     WalkBound nodes(tree.node_count(), &admission.work);
-    PointQuery query{tree, nodes, in_tree.at, exact.bound_in_tree(), {}, Errc::kOk, {}};
+    PointQuery query(tree, nodes, in_tree.at, exact.bound_in_tree());
     query.placed = &exact;
     error = find_nearest(tree, query);
     if (error != Errc::kOk) return false;
@@ -210,6 +212,14 @@ ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& poin
   query.found->point = scene.to_world(query.found->point);
   query.found->distance = scene.to_world(std::sqrt(query.found->distance));
   return *query.found;
+}
+
+Status closest_points(const Scene& scene, std::span<const Eigen::Vector3d> points,
+                      std::span<ScenePointResult> results, double max_distance, LayerMask layers,
+                      const QueryLimits& limits) {
+  return answer_each(points, results, [&](const Eigen::Vector3d& point) {
+    return closest_point(scene, point, max_distance, layers, limits);
+  });
 }
 
 }  // namespace boxtree

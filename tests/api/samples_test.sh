@@ -90,6 +90,14 @@ diff <(grep -v '^between' closest_point.out) - <<'END'
 distance 2 to face 0
 within 1.5: nothing
 END
+# At x = -2 to 2, 0.5, 1.5 and 2.5 high: over the floor, then over the plates at 0.25 and 0.5; within 1.25.
+prints point_batch level.bxt <<'END'
+ 0.50    -    -
+ 0.50    -    -
+ 0.50    -    -
+ 0.25 1.25    -
+ 0.00 1.00    -
+END
 # At height 0.5 the crate stands on the upper plate: its bottom and the four sides touch; lower, the sides alone.
 prints pairs level.bxt crate.bxt <<'END'
 height 0.625: 0 pairs, free

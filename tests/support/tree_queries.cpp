@@ -2,6 +2,7 @@
 #include "tests/support/tree_queries.h"
 
 #include <array>
+#include <limits>
 
 namespace boxtree::test {
 namespace {
@@ -39,6 +40,22 @@ Outcome outcome_of_batch(const Batch& batch, const Tree& tree, const Ray& ray,
   std::array<RayResult, 20> results;
   const Status status = batch(tree, rays, results, limits);
   return status.ok() ? outcome(results.back(), distance_of) : Outcome{status.error().code, 0};
+}
+double length_of(const ClosestPoint& closest) {
+  return closest.distance;
+}
+// The same of a point.
+Outcome outcome_of_batch(const Tree& tree, const Eigen::Vector3d& point,
+                         const QueryLimits& limits) {
+  std::array<Eigen::Vector3d, 20> points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = point;
+    points[i][0] += 0.01 * static_cast<double>(points.size() - 1 - i);
+  }
+  std::array<PointResult, 20> results;
+  const Status status =
+      closest_points(tree, points, results, std::numeric_limits<double>::infinity(), limits);
+  return status.ok() ? outcome(results.back(), length_of) : Outcome{status.error().code, 0};
 }
 double t_of(const CastHit& hit) {
   return hit.t;
@@ -79,8 +96,7 @@ std::vector<TreeQuery> tree_queries(const QuerySet& q) {
        }},
       {"any_hits", 96, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
-         return outcome_of_batch([](auto&... a) { return any_hits(a...); }, tree, q.ray,
-                                 limits);
+         return outcome_of_batch([](auto&... a) { return any_hits(a...); }, tree, q.ray, limits);
        }},
       {"all_hits", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
@@ -174,8 +190,11 @@ std::vector<TreeQuery> tree_queries(const QuerySet& q) {
        }},
       {"closest_point", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
-         return outcome(closest_point(tree, q.point, 1e9, limits),
-                        [](const ClosestPoint& closest) { return closest.distance; });
+         return outcome(closest_point(tree, q.point, 1e9, limits), length_of);
+       }},
+      {"closest_points", 96, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_batch(tree, q.point, limits);
        }},
       {"closest_point with bounds", 160, false, false,
        [=](const Tree& tree, const Tree&, const QueryLimits&) {

@@ -21,6 +21,7 @@
 #endif
 #if BOXTREE_HAS_POINT_QUERIES
 #include <boxtree/closest.h>
+#include <boxtree/closest_batch.h>
 #endif
 #if BOXTREE_HAS_PAIR_QUERIES
 #include <boxtree/contact.h>
@@ -32,6 +33,7 @@
 #include <boxtree/tree.h>
 #if BOXTREE_HAS_SCENE_QUERIES
 #include <boxtree/scene.h>
+#include <boxtree/scene_closest_batch.h>
 #include <boxtree/scene_ray_batch.h>
 #if BOXTREE_HAS_CAST_QUERIES
 #include <boxtree/scene_cast.h>

@@ -24,7 +24,8 @@ enum Parts : unsigned {
   kWithin = 4096,
   kScene = 8192,
   kRayBatch = 16384,
-  kAll = 32767
+  kPointBatch = 32768,
+  kAll = 65535
 };
 #ifndef PARTS
 #define PARTS kAll
@@ -103,6 +104,10 @@ bool query(const World& world) {
   if constexpr (has(kSphere)) all = all && overlap_sphere(world, {0, 0, 0}, 1, kGoOn).ok();
   if constexpr (has(kFrustum)) all = all && overlap_frustum(world, view(), kGoOn).ok();
   if constexpr (has(kPoint)) all = all && closest_point(world, {0, 0, 0}).ok();
+  if constexpr (has(kPointBatch) && std::is_same_v<World, Tree>) {
+    boxtree::PointResult results[4];
+    all = all && closest_points(world, kPoints, results).ok();
+  }
   return all;
 }
 

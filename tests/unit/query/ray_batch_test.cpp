@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Batches of rays answer each ray as it is answered alone, to the bit.
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -17,6 +15,7 @@
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
+#include "tests/unit/query/batches.h"
 #include "tests/unit/walk/targets.h"
 
 namespace boxtree {
@@ -25,12 +24,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-bool same_bits(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return same_bits(a[0], b[0]) && same_bits(a[1], b[1]) && same_bits(a[2], b[2]);
-}
+using test::same_bits;
 bool same_bits(const RayResult& a, const RayResult& b) {
   return a.has_value() == b.has_value() && a.code() == b.code() &&
          a.error().detail == b.error().detail && same_bits(a->t, b->t) &&
@@ -62,30 +56,7 @@ void expect_as_alone(const Tree& tree, const std::vector<Ray>& rays, const Optio
   });
 }
 
-class RayBatches : public testing::TestWithParam<test::Encoding> {
- protected:
-  // A point somewhere in the middle `part` of the box, or so far around it.
-  Eigen::Vector3d point_around(const Eigen::AlignedBox3d& box, double part) {
-    Eigen::Vector3d p;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      p[k] = box.center()[k] + part * (box.sizes()[k] + 0.1) *
-                                   std::uniform_real_distribution<double>(-0.5, 0.5)(random_);
-    }
-    return p;
-  }
-
-  template <class Body>
-  void for_each_mesh(const Body& body) {
-    for (const cooker::SourceMesh& mesh : test::all_kinds()) {
-      SCOPED_TRACE(mesh.name);
-      const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
-      body(cooked.tree, cooked.tree.bounds());
-      if (HasFatalFailure()) return;
-    }
-  }
-
-  std::mt19937_64 random_{41};
-};
+class RayBatches : public test::BatchTest {};
 
 TEST_P(RayBatches, OfACameraAreAsAlone) {
   for_each_mesh([&](const Tree& tree, const Eigen::AlignedBox3d& box) {

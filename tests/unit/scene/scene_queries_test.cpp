@@ -124,6 +124,31 @@ TEST_P(SceneQueries, BatchesAnswerEachRayAsAlone) {
   EXPECT_EQ(any_hits(scene_, rays, few).error().detail, "results.size()");
 }
 
+TEST_P(SceneQueries, BatchesAnswerEachPointAsAlone) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 100; ++i) points.push_back(point());
+  points[7].x() = std::numeric_limits<double>::quiet_NaN();
+  std::vector<ScenePointResult> closest(points.size());
+  for (const LayerMask layers : {kAllLayers, LayerMask{1}}) {
+    for (const QueryLimits& limits : {QueryLimits(), QueryLimits{20}}) {
+      ASSERT_TRUE(closest_points(scene_, points, closest, 3, layers, limits).ok());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        SCOPED_TRACE(i);
+        const ScenePointResult alone = closest_point(scene_, points[i], 3, layers, limits);
+        EXPECT_EQ(closest[i].code(), alone.code());
+        EXPECT_EQ(closest[i].error().detail, alone.error().detail);
+        EXPECT_EQ(closest[i].has_value(), alone.has_value());
+        EXPECT_EQ(closest[i]->distance, alone->distance);
+        EXPECT_EQ(closest[i]->instance, alone->instance);
+        EXPECT_EQ(closest[i]->face.index, alone->face.index);
+        EXPECT_EQ(closest[i]->point, alone->point);
+      }
+    }
+  }
+  EXPECT_EQ(closest_points(scene_, points, std::span(closest).first(3)).error().detail,
+            "results.size()");
+}
+
 TEST_P(SceneQueries, BoxEqualsBruteForce) {
   before_and_after_moving([&](const std::vector<WorldTriangle>& triangles) {
     std::size_t touched = 0;
