@@ -10,6 +10,7 @@
 
 #include <boxtree/boxtree.h>
 
+#include "runtime/c/batch.h"
 #include "runtime/c/call.h"
 #include "runtime/c/convert.h"
 #include "runtime/c/handle.h"
@@ -23,9 +24,6 @@ using namespace boxtree;
 using namespace boxtree::c;
 
 namespace {
-
-// Rays that are brought to C++ at a time: whole packets of closest_hits().
-constexpr std::size_t kRaysAtATime = 64;
 
 bxt_ray_hit hit_of(const RayHit& hit, bool is_hit, std::uint32_t instance) {
   return {sizeof(bxt_ray_hit), is_hit, hit.t, to_c(hit.face, instance),
@@ -150,31 +148,21 @@ bxt_status many_hits(const Handle* subject, const bxt_ray* rays, std::size_t cou
   if (!has_size(hits)) return refuse(error, "hits: struct_size");
   return guarded(error, [&] {
     return with_face_options<Handle>(options, error, [&](const auto& read) {
-      const Elements<bxt_ray_hit> elements(hits);
-      bxt_status first_error = BXT_OK;
-      const auto answer = [&](std::size_t i, const auto& result) {
-        elements.write(i, hit_of(result));
-        const auto status = static_cast<bxt_status>(result.code());
-        if (statuses != nullptr) statuses[i] = status;
-        if (status != BXT_OK && first_error == BXT_OK) first_error = finish(result, error);
+      BatchAnswers<bxt_ray_hit> answers(hits, statuses, error);
+      const auto write = [&](std::size_t i, const auto& result) {
+        answers.write(i, hit_of(result), result);
       };
       if constexpr (std::is_same_v<Handle, bxt_tree>) {
-        std::array<Ray, kRaysAtATime> chunk;
-        std::array<RayResult, kRaysAtATime> results;
-        for (std::size_t begin = 0; begin < count; begin += kRaysAtATime) {
-          const std::size_t n = std::min(kRaysAtATime, count - begin);
-          for (std::size_t i = 0; i < n; ++i) chunk[i] = to_cpp(rays[begin + i]);
-          // Their numbers are the same, so it returns kOk.
-          static_cast<void>(many(subject->inside, std::span<const Ray>(chunk).first(n),
-                                 std::span<RayResult>(results).first(n), read));
-          for (std::size_t i = 0; i < n; ++i) answer(begin + i, results[i]);
-        }
+        answer_in_chunks<RayResult>(
+            rays, count,
+            [&](auto chunk, auto results) { return many(subject->inside, chunk, results, read); },
+            write);
       } else {
         // A scene answers rays one by one, be there a batch or not.
         for (std::size_t i = 0; i < count; ++i)
-          answer(i, one(subject->inside, to_cpp(rays[i]), read));
+          write(i, one(subject->inside, to_cpp(rays[i]), read));
       }
-      return first_error;
+      return answers.first_error();
     });
   });
 }

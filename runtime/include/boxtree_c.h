@@ -71,7 +71,7 @@ extern "C" {
 
 /// The version of this interface: major * 65536 + minor. Programs run with a library of the same
 /// major version whose minor version is theirs or higher.
-#define BXT_ABI_VERSION 0x10000u
+#define BXT_ABI_VERSION 0x10001u
 
 /// BXT_ABI_VERSION of the library that is linked.
 BXT_API uint32_t bxt_abi_version(void);
@@ -651,6 +651,13 @@ typedef struct bxt_closest_point {
 BXT_API bxt_status bxt_tree_closest_point(const bxt_tree* tree, const bxt_vec3* point,
                                           double max_distance, const bxt_limits* limits,
                                           bxt_closest_point* answer, bxt_error* error);
+/// The nearest point to each of `count` points, to the bit what bxt_tree_closest_point() says of it,
+/// in less time, the more so the nearer consecutive points are to each other. An error of a point
+/// leaves its answer empty; otherwise as bxt_tree_closest_hits().
+BXT_API bxt_status bxt_tree_closest_points(const bxt_tree* tree, const bxt_vec3* points,
+                                           size_t count, double max_distance,
+                                           const bxt_limits* limits, bxt_closest_point* answers,
+                                           bxt_status* statuses, bxt_error* error);
 /// The nearest point as nearly as `options` require, within their budget. Up to 160 KB of stack.
 BXT_API bxt_status bxt_tree_closest_point_within(const bxt_tree* tree, const bxt_vec3* point,
                                                  const bxt_approximation* options,
@@ -1021,6 +1028,11 @@ BXT_API bxt_status bxt_scene_instances_in_frustum(const bxt_scene* scene, const 
 BXT_API bxt_status bxt_scene_closest_point(const bxt_scene* scene, const bxt_vec3* point,
                                            double max_distance, const bxt_limits* limits,
                                            bxt_closest_point* answer, bxt_error* error);
+/// As bxt_tree_closest_points(), in the time of one by one.
+BXT_API bxt_status bxt_scene_closest_points(const bxt_scene* scene, const bxt_vec3* points,
+                                            size_t count, double max_distance,
+                                            const bxt_limits* limits, bxt_closest_point* answers,
+                                            bxt_status* statuses, bxt_error* error);
 /// As bxt_tree_cast_closest().
 BXT_API bxt_status bxt_scene_cast_closest(const bxt_scene* scene, const bxt_shape* shape,
                                           const bxt_motion* motion, const bxt_face_options* options,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// XXH3-64 of the amalgamation against xxHash's own: every length around each of its cases, whole, in two
-// parts and byte by byte.
+// XXH3-64 of the amalgamation against xxHash's own: every length around each of its cases, whole,
+// in two parts and byte by byte.
 #include <cstddef>
 #include <cstdint>
 #include <random>

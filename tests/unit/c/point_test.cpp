@@ -78,6 +78,57 @@ TEST(CPoints, AreThoseOfCpp) {
   });
 }
 
+template <class Handle>
+constexpr auto kClosestPoints = bxt_tree_closest_points;
+template <>
+constexpr auto kClosestPoints<const bxt_scene*> = bxt_scene_closest_points;
+
+// Each answer and status is that of the point alone, the message that of the first error.
+TEST(CPoints, OfABatchAreThoseOfPointsAlone) {
+  test::for_each_subject([](const auto& subject, const auto* c_subject) {
+    test::Randoms randoms(subject);
+    for (const std::size_t count : {0u, 1u, 70u, 200u}) {
+      std::vector<bxt_vec3> points;
+      for (std::size_t i = 0; i < count; ++i) {
+        Eigen::Vector3d point = randoms.point(1.5);
+        if (i % 50 == 37) point.y() = NAN;
+        points.push_back(test::vec3(point));
+      }
+      for (const double largest : {static_cast<double>(INFINITY), 0.1 * randoms.size(), -1.0}) {
+        std::vector<bxt_closest_point> answers(count + 1);
+        for (bxt_closest_point& answer : answers) answer.struct_size = sizeof answer;
+        std::vector<bxt_status> statuses(count + 1, -3);
+        bxt_error error = {}, first = {};
+        error.struct_size = first.struct_size = sizeof error;
+        const bxt_status status =
+            kClosestPoints<decltype(c_subject)>(c_subject, points.data(), count, largest, nullptr,
+                                                answers.data(), statuses.data(), &error);
+        bxt_status first_status = BXT_OK;
+        for (std::size_t i = 0; i < count; ++i) {
+          SCOPED_TRACE(i);
+          bxt_closest_point alone = {};
+          alone.struct_size = sizeof alone;
+          alone.distance = alone.lower = alone.upper = INFINITY;
+          alone.converged = true;
+          alone.face = answers[i].face;  // an error says nothing of one
+          const bxt_status expected =
+              kClosestPoint<decltype(c_subject)>(c_subject, &points[i], largest, nullptr, &alone,
+                                                 first_status == BXT_OK ? &first : nullptr);
+          if (first_status == BXT_OK) first_status = expected;
+          ASSERT_EQ(statuses[i], expected);
+          ASSERT_EQ(numbers_of_point(answers[i]), numbers_of_point(alone));
+        }
+        ASSERT_EQ(status, first_status);
+        if (status != BXT_OK) {
+          EXPECT_STREQ(error.message, first.message);
+        }
+        EXPECT_EQ(statuses[count], -3);
+        EXPECT_EQ(answers[count].distance, 0) << "written behind the last one";
+      }
+    }
+  });
+}
+
 TEST(CPoints, WithinBoundsAreThoseOfCpp) {
   test::for_each_tree([](const Tree& tree, const bxt_tree* c_tree) {
     test::Randoms randoms(tree);

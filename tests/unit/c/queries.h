@@ -138,6 +138,19 @@ struct CQuery {
       {"tree closest_point", 64, closest([=](auto* point) {
          return bxt_tree_closest_point(tree, &center, INFINITY, nullptr, point, nullptr);
        })},
+      // Less their own arrays of 100 points, answers and statuses: 16 KB.
+      {"tree closest_points", 160 + 16,
+       [=] {
+         std::array<bxt_vec3, 100> points;
+         for (std::size_t i = 0; i < points.size(); ++i) {
+           points[i] = {center.x + 0.01 * static_cast<double>(i), center.y, center.z};
+         }
+         std::array<bxt_closest_point, 100> answers = {};
+         answers[0].struct_size = sizeof answers[0];
+         std::array<bxt_status, 100> statuses;
+         return bxt_tree_closest_points(tree, points.data(), points.size(), INFINITY, nullptr,
+                                        answers.data(), statuses.data(), nullptr);
+       }},
       {"tree closest_point_within", 160, closest([=](auto* point) {
          return bxt_tree_closest_point_within(tree, &center, nullptr, point, nullptr);
        })},

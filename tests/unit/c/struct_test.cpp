@@ -212,6 +212,12 @@ TEST_F(CArguments, StructsThatAreWrittenMayBeLonger) {
   expect_output<bxt_closest_point>("closest_point", [&](bxt_closest_point* answer) {
     return bxt_tree_closest_point(tree, &point_, INFINITY, nullptr, answer, nullptr);
   });
+  expect_output<bxt_closest_point>("closest_points", [&](bxt_closest_point* answer) {
+    return bxt_tree_closest_points(tree, &point_, 1, INFINITY, nullptr, answer, nullptr, nullptr);
+  });
+  expect_output<bxt_closest_point>("closest_points of a scene", [&](bxt_closest_point* answer) {
+    return bxt_scene_closest_points(scene, &point_, 1, INFINITY, nullptr, answer, nullptr, nullptr);
+  });
   expect_output<bxt_closest_point>("closest_point_within", [&](bxt_closest_point* answer) {
     return bxt_tree_closest_point_within(tree, &point_, nullptr, answer, nullptr);
   });
@@ -406,6 +412,8 @@ TEST_F(CArguments, ThatAreNullAreRefused) {
                     bxt_tree_overlap_box_within, tree, &min_, &max_, 0, 9, &overlap);
   EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "point"}, {4, "answer"}), bxt_tree_closest_point, tree,
                     &point_, 9, nullptr, &point);
+  EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "points"}, {5, "answers"}), bxt_tree_closest_points, tree,
+                    &point_, 1, INFINITY, nullptr, &point, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "point"}, {3, "answer"}), bxt_tree_closest_point_within,
                     tree, &point_, nullptr, &point);
   EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "shape"}, {2, "motion"}, {4, "hit"}),
@@ -456,6 +464,8 @@ TEST_F(CArguments, ThatAreNullAreRefused) {
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "planes"}, {2, "visitor"}),
                     bxt_scene_instances_in_frustum, scene, planes, instance_visitor, nullptr,
                     nullptr);
+  EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "points"}, {5, "answers"}), bxt_scene_closest_points,
+                    scene, &point_, 1, INFINITY, nullptr, &point, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "point"}, {4, "answer"}), bxt_scene_closest_point, scene,
                     &point_, 9, nullptr, &point);
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "shape"}, {2, "motion"}, {4, "hit"}),
