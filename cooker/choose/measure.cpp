@@ -37,6 +37,21 @@ double per_ray(const Tree& tree, const std::vector<Ray>& rays, std::size_t runs,
   return seconds / static_cast<double>(rays.size());
 }
 
+// And of points.
+double per_point(const Tree& tree, const std::vector<Eigen::Vector3d>& points, std::size_t runs,
+                 Status& status) {
+  if (points.empty()) return 0;
+  std::vector<PointResult> results(points.size());
+  const double seconds = median_seconds(runs, [&] {
+    const Status found = closest_points(tree, points, results);
+    if (!found && status.ok()) status = found;
+  });
+  for (const PointResult& result : results) {
+    if (!result.ok() && status.ok()) status = result.error();
+  }
+  return seconds / static_cast<double>(points.size());
+}
+
 }  // namespace
 
 double clock_cost_ns() {
@@ -93,6 +108,12 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
         if (closest) figures.point_distance += closest->distance;
         return closest.code();
       });
+  figures.point_batch_ns = 1e9 * per_point(tree, workload.points, runs, status);
+  figures.lattice_ns =
+      1e9 * per_query(workload.lattice, runs, status, [&](const Eigen::Vector3d& point) {
+        return closest_point(tree, point).code();
+      });
+  figures.lattice_batch_ns = 1e9 * per_point(tree, workload.lattice, runs, status);
   const Pose here = Pose::Identity();
   figures.pair_first_us = 1e6 * per_query(workload.poses, runs, status, [&](const Pose& pose) {
                             const auto contact = first_contact(tree, here, tree, pose);

@@ -103,6 +103,28 @@ double touching_distance(const Eigen::Vector3d& half, const Eigen::Matrix3d& rot
   return distance;
 }
 
+// In bricks of 4 x 2 x 2, one after another.
+std::vector<Eigen::Vector3d> lattice_points(const Eigen::AlignedBox3d& bounds, std::size_t side) {
+  constexpr std::size_t kBrick[3] = {4, 2, 2};
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(side * side * side);
+  const auto place = [&](std::size_t i) {
+    return static_cast<double>(i) / static_cast<double>(side - 1) - 0.5;
+  };
+  for (std::size_t z = 0; z < side; z += kBrick[2]) {
+    for (std::size_t y = 0; y < side; y += kBrick[1]) {
+      for (std::size_t x = 0; x < side; x += kBrick[0]) {
+        for (std::size_t i = 0; i < kBrick[0] * kBrick[1] * kBrick[2]; ++i) {
+          const Eigen::Vector3d at(place(x + i % kBrick[0]), place(y + i / kBrick[0] % kBrick[1]),
+                                   place(z + i / (kBrick[0] * kBrick[1])));
+          points.emplace_back(bounds.center() + 1.2 * at.cwiseProduct(bounds.sizes()));
+        }
+      }
+    }
+  }
+  return points;
+}
+
 // Of a camera that looks at the middle from the direction (2, 1, 2) / 3; the ball of the bounds
 // fills the picture.
 std::vector<Ray> camera_rays(const Eigen::AlignedBox3d& bounds, double diagonal,
@@ -153,6 +175,7 @@ Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& si
     workload.rays.push_back({origin, length > 0 ? Eigen::Vector3d(toward / length) : toward});
   }
   workload.camera = camera_rays(bounds, diagonal, size.camera);
+  workload.lattice = lattice_points(bounds, size.lattice);
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.025 * diagonal);
   for (std::size_t i = 0; i < size.boxes; ++i) {
     const Eigen::Vector3d centre = random.inside(bounds);

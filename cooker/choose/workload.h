@@ -18,11 +18,16 @@ struct WorkloadSize {
   std::size_t apart = 100;
   std::size_t camera = 0;  // pixels of a side, a multiple of 4
   std::size_t segments = 0;
+  std::size_t lattice = 0;  // points of a side, a multiple of 4
 };
 
 /// What Workload::camera is, for texts.
 inline constexpr const char* kCameraMeaning =
     "a camera at the diagonal's length from the middle, in tiles of 4 x 4 pixels";
+
+/// What Workload::lattice is, for texts.
+inline constexpr const char* kLatticeMeaning =
+    "the points of a lattice over 1.2 times the bounds, in bricks of 4 x 2 x 2";
 
 /// What Workload::boxes are, for texts.
 inline constexpr const char* kBoxMeaning = "cubes with an edge of 5 % of the diagonal";
@@ -44,6 +49,8 @@ struct Workload {
   std::vector<Eigen::AlignedBox3d> boxes;
   /// In the bounds scaled by 1.2.
   std::vector<Eigen::Vector3d> points;
+  /// kLatticeMeaning.
+  std::vector<Eigen::Vector3d> lattice;
   /// Poses of a copy of the mesh with random rotations, in random directions, at 0.6, 0.8, 0.9 and
   /// 1.0 of the distance at which the mesh's bounding box and the copy's rotated one touch.
   std::vector<Pose> poses;

@@ -38,8 +38,8 @@ struct Arguments {
 };
 
 // A tenth of the queries: for a look, not for a figure.
-constexpr WorkloadSize kAllQueries{.camera = 512};
-constexpr WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 0, 128};
+constexpr WorkloadSize kAllQueries{.camera = 512, .lattice = 32};
+constexpr WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 0, 128, 0, 16};
 
 Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
                    const Arguments& arguments) {
@@ -60,6 +60,9 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
               {"cast_sphere_ns", figures->cast_sphere_ns},
               {"box_ns", figures->box_ns},
               {"point_ns", figures->point_ns},
+              {"point_batch_ns", figures->point_batch_ns},
+              {"lattice_ns", figures->lattice_ns},
+              {"lattice_batch_ns", figures->lattice_batch_ns},
               {"pair_first_us", figures->pair_first_us},
               {"pair_all_us", figures->pair_all_us},
               {"open_us", open->first_answer_us},
@@ -139,8 +142,8 @@ void print_row(const Json& row) {
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
   fmt::print(
       "  measured means; spheres with a radius of 1 % of the diagonal are cast along the rays;\n"
-      "  boxes are {};\n  contacts are those with {};\n  view is {}\n",
-      kBoxMeaning, kPoseMeaning, kCameraMeaning);
+      "  boxes are {};\n  contacts are those with {};\n  view is {};\n  near is {}\n",
+      kBoxMeaning, kPoseMeaning, kCameraMeaning, kLatticeMeaning);
   const auto number = [&](const char* key) { return row[key].get<double>(); };
   const auto of = [&](const char* key, const char* word) {
     return counted(row[key].get<std::uint64_t>(), word);
@@ -152,8 +155,10 @@ void print_row(const Json& row) {
   fmt::print("  cast  {:9.0f} ns  {} of spheres\n", number("cast_sphere_ns"),
              of("cast_sphere_hits", "hit"));
   fmt::print("  box   {:9.0f} ns  {}\n", number("box_ns"), of("box_faces", "face"));
-  fmt::print("  point {:9.0f} ns  {:.6g} summed distance\n", number("point_ns"),
-             number("point_distance"));
+  fmt::print("  point {:9.0f} ns  {:.6g} summed distance, in batches {:.0f} ns\n",
+             number("point_ns"), number("point_distance"), number("point_batch_ns"));
+  fmt::print("  near  {:9.0f} ns  in batches {:.0f} ns\n", number("lattice_ns"),
+             number("lattice_batch_ns"));
   fmt::print("  first {:9.1f} us  {}\n", number("pair_first_us"), of("pair_hits", "contact"));
   fmt::print("  all   {:9.1f} us  {}\n", number("pair_all_us"), of("pair_pairs", "pair"));
   fmt::print(
