@@ -256,6 +256,18 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
   return {};
 }
 
+Result<std::vector<std::filesystem::path>> list_assimp_files(const SourceFile& source,
+                                                             const ImportOptions& options) {
+  if (options.try_first) {
+    const Status tried = try_reading(source);
+    if (!tried.ok()) return in_file(source.title(), tried.error());
+  }
+  SourceUse use;
+  const auto scene = read_scene(source, FaceOrder::kOfFile, use);
+  if (!scene.ok()) return in_file(source.title(), scene.error());
+  return std::move(use.files);
+}
+
 std::vector<std::string> assimp_endings() {
   aiString list;  // "*.3ds;*.obj;..."
   Assimp::Importer().GetExtensionList(list);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,11 @@ enum class ImportWanted : std::uint8_t { kMesh, kScene, kFitting };
 /// Reads `source` into `out`, except the name, as import.h and source_scene.h specify.
 Status import_with_assimp(const SourceFile& source, const ImportOptions& options,
                           ImportWanted wanted, ImportedFile& out);
+
+/// The files that import_with_assimp reads of `source`, in order of first use. Only reading tells
+/// them, so this costs as much. Errors: those of it.
+Result<std::vector<std::filesystem::path>> list_assimp_files(const SourceFile& source,
+                                                             const ImportOptions& options);
 
 /// Endings of the names of files that assimp reads, in lower case.
 [[nodiscard]] std::vector<std::string> assimp_endings();

@@ -199,6 +199,20 @@ Result<ImportedFile> import_file(const fs::path& path, const ImportOptions& opti
   return import_guarded(path, options, ImportWanted::kFitting);
 }
 
+Result<std::vector<fs::path>> list_source_files(const fs::path& path,
+                                                const ImportOptions& options) {
+  const SourceFile source(path, options.bytes);
+  try {
+    if (Status status = check_source_file(source); !status.ok()) return status.error();
+    if (!has_mesh_ending(source.path())) return explained(source, Error{Errc::kImportFailed, {}});
+    if (has_extension(source.path(), "obj")) return list_obj_files(source);
+    if (has_node_graph(source.path())) return list_assimp_files(source, options);
+    return source.bytes() ? std::vector<fs::path>() : std::vector{tidied(source.path())};
+  } catch (...) {
+    return in_file(source.title(), error_of_exception());
+  }
+}
+
 bool has_node_graph(const fs::path& path) {
   return find_extension(kMeshReaders, path) == nullptr;
 }

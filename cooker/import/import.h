@@ -146,6 +146,13 @@ struct Imported {
 /// of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
+/// The files that an import of `path` reads, itself first, as ImportReport::files_read has them;
+/// none for ImportOptions::bytes but those beside it. Files of assimp's formats have to be read to
+/// know; of others no vertex is read. Errors: kFileNotFound, kFileUnreadable; for files of which
+/// only reading tells it, those of import_mesh.
+Result<std::vector<std::filesystem::path>> list_source_files(const std::filesystem::path& path,
+                                                             const ImportOptions& options = {});
+
 /// Whether files of such a name have a node graph, as all have that assimp reads: then import_mesh
 /// flattens them.
 [[nodiscard]] bool has_node_graph(const std::filesystem::path& path);

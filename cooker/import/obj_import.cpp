@@ -36,6 +36,19 @@ bool is_known(std::string_view keyword) {
          std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; });
 }
 
+// Of a statement in one line.
+std::string_view keyword_of(std::string_view statement) {
+  return statement.substr(0, statement.find_first_of(" \t"));
+}
+
+// What a statement in one line names as material libraries; empty if it is another one.
+constexpr std::string_view kLibrary = "mtllib";
+std::string_view library_of(std::string_view statement) {
+  const std::string_view keyword = keyword_of(statement);
+  return keyword == kLibrary ? without_blanks(statement.substr(keyword.size()))
+                             : std::string_view();
+}
+
 // Counted from 1, or backwards from -1; nothing if not a number. Numbers of texture coordinates and
 // normals may follow, and nothing else: 7, 7/1, 7/1/2, 7//2.
 std::optional<std::int64_t> corner_number(std::string_view word) {
@@ -138,7 +151,7 @@ Status Reader<T>::read_statement() {
   }
   if (statement_.is_element()) return read_element();
   const std::string_view text = joined_text(statement_, joined_);
-  const std::string_view keyword = text.substr(0, text.find_first_of(" \t"));
+  const std::string_view keyword = keyword_of(text);
   const std::string_view name = without_blanks(text.substr(keyword.size()));
   if (!is_known(keyword)) {
     return failure(fmt::format("no statement of OBJ begins with {:?}", keyword));
@@ -148,7 +161,8 @@ Status Reader<T>::read_statement() {
     split_tokens(name, words_);
     groups_.begin(fmt::format("{}", fmt::join(words_, " ")));
   }
-  if (keyword == "mtllib" && !name.empty()) libraries_.emplace_back(name);
+  if (const std::string_view library = library_of(text); !library.empty())
+    libraries_.emplace_back(library);
   return {};
 }
 
@@ -279,6 +293,26 @@ Status import_obj(const SourceFile& source, const ImportOptions& options, Import
   if (!hash.ok()) return hash.error();
   out.report.content_hash = hash.value();
   return {};
+}
+
+Result<std::vector<fs::path>> list_obj_files(const SourceFile& source) {
+  const Result<std::string> bytes = source.read();
+  if (!bytes.ok()) return bytes.error();
+  const Result<std::string_view> text = text_of(*bytes);
+  if (!text.ok()) return in_file(source.title(), text.error());
+  ImportReport report;
+  if (!source.bytes()) report.files_read = {tidied(source.path())};
+  if (text->find(kLibrary) == std::string_view::npos) return std::move(report.files_read);
+  std::vector<std::string> libraries;
+  std::string joined;
+  ObjStatement statement{};
+  for (ObjStatements statements(statements_of(*text)); statements.next(statement);) {
+    if (!statement.text.starts_with(kLibrary)) continue;
+    const std::string_view name = library_of(joined_text(statement, joined));
+    if (!name.empty()) libraries.emplace_back(name);
+  }
+  find_libraries(source, libraries, report);
+  return std::move(report.files_read);
 }
 
 }  // namespace boxtree::cooker

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "cooker/import/face_materials.h"
 #include "cooker/import/import.h"
@@ -18,5 +19,9 @@ namespace boxtree::cooker {
 /// surfaces are skipped.
 Status import_obj(const SourceFile& source, const ImportOptions& options, Imported& out,
                   FaceMaterials& materials);
+
+/// The file and the material libraries that import_obj would find. Reads the text, and no vertex of
+/// it. Errors: as for a text that cannot be read.
+Result<std::vector<std::filesystem::path>> list_obj_files(const SourceFile& source);
 
 }  // namespace boxtree::cooker

@@ -105,8 +105,8 @@ Result<CookInput> load_listed(const Profile& profile, const ImportOptions& optio
 
 }  // namespace
 
-Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& profile,
-                             const ImportOptions& options, const Progress& progress) {
+Result<std::vector<fs::path>> scene_files(std::span<const fs::path> inputs,
+                                          const Profile& profile) {
   const bool is_listed = !profile.instances.empty();
   const bool has_source = is_listed || profile.source.has_value();
   if (has_source == !inputs.empty()) {
@@ -118,17 +118,32 @@ Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& pr
                             : ": names nothing to cook; give MESH in the command, or \"source\" "
                               "or [[instance]] in a profile")};
   }
-  if (is_listed) return load_listed(profile, options, progress);
+  std::vector<fs::path> files;
+  if (is_listed) {
+    for (const ProfileMesh& mesh : profile.meshes) {
+      if (mesh.file) files.push_back(mesh.file->value);
+    }
+  } else if (profile.source) {
+    files.push_back(profile.source->value);
+  } else {
+    files.assign(inputs.begin(), inputs.end());
+  }
+  return files;
+}
+
+Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& profile,
+                             const ImportOptions& options, const Progress& progress) {
+  const Result<std::vector<fs::path>> files = scene_files(inputs, profile);
+  if (!files) return files.error();
+  if (!profile.instances.empty()) return load_listed(profile, options, progress);
   if (profile.source) {
     if (Status status = check_named(profile, "source", *profile.source); !status) {
       return status.error();
     }
   }
   CookInput input;
-  const std::span<const fs::path> files =
-      profile.source ? std::span(&profile.source->value, 1) : inputs;
   std::optional<SceneJoin> join;  // of the first and all others
-  for (const fs::path& file : files) {
+  for (const fs::path& file : *files) {
     const SourceFile source(file, options.bytes);
     announce(progress, "import " + source.short_title());
     Result<SourceScene> scene = import_scene(file, options);

@@ -34,9 +34,14 @@ struct CookInput {
   std::function<Result<Imported>(std::size_t mesh)> importer;
 };
 
+/// The mesh files of a scene, in the order in which load_scene() reads them: those that the profile
+/// names, or `inputs`. Reads nothing. Error: kProfileInvalid if neither or both state what to load.
+Result<std::vector<std::filesystem::path>> scene_files(
+    std::span<const std::filesystem::path> inputs, const Profile& profile);
+
 /// Loads the scene of a profile or, if it names no source and lists no meshes, of `inputs`, which
 /// together form one scene. Reports progress before each file is read. Errors: those of
-/// import_scene; kProfileInvalid if neither or both state what to load.
+/// import_scene and scene_files.
 Result<CookInput> load_scene(std::span<const std::filesystem::path> inputs, const Profile& profile,
                              const ImportOptions& options, const Progress& progress = {});
 
