@@ -157,9 +157,10 @@ class Job {
 }  // namespace
 
 // Files that another file refers to are known, and checked, only after it is read.
-Status check_job(const CookJob& job) {
+Status check_job(const CookJob& job, std::span<const fs::path> others) {
   if (job.output.empty()) return Error{Errc::kWriteFailed, "the output has no name"};
   std::vector<fs::path> inputs = job.inputs;
+  inputs.insert(inputs.end(), others.begin(), others.end());
   for (const fs::path& more : {job.profile, job.costs}) {
     if (!more.empty()) inputs.push_back(more);
   }

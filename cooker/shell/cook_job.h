@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cooker/cook.h"
@@ -30,9 +31,9 @@ struct CookJob {
 };
 
 /// Checks a job before anything is read: the output must have a name, outputs must differ, and none
-/// may be an input. Errors: kWriteFailed; kMeshUnsupported for a reordered mesh of several inputs
+/// may be an input, or one of `others` that it reads. Errors: kWriteFailed; kMeshUnsupported for a reordered mesh of several inputs
 /// or a scene, and as check_reordered_names.
-Status check_job(const CookJob& job);
+Status check_job(const CookJob& job, std::span<const std::filesystem::path> others = {});
 
 /// Cooks a job: a scene if as_scene is set or the only input places meshes twice or more; otherwise
 /// each input becomes a tree named after its file. Each input is imported once. Inputs that share a

@@ -32,4 +32,18 @@ class task_arena {
   int jobs_;
 };
 
+namespace this_task_arena {
+
+inline int max_concurrency() {
+  return task_arena::jobs();
+}
+
+/// A thread has one task at a time, which is all that isolation is for.
+template <class Work>
+void isolate(const Work& work) {
+  work();
+}
+
+}  // namespace this_task_arena
+
 }  // namespace tbb

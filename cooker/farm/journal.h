@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// What a run over a manifest has finished, so that one that was killed goes on where it was.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <boxtree/error.h>
+
+#include "cooker/farm/sha256.h"
+
+namespace boxtree::cooker {
+
+/// A file of JSON lines, one added whenever an output is complete: {"output", "key", "sha256",
+/// "bytes"}. Of several lines of an output the last one counts. A line that is cut short or damaged
+/// counts as none, so that its job is cooked again: a journal can only cost time. One process at a
+/// time has it: a lock of the file (flock) says so. Safe for several threads.
+class Journal {
+ public:
+  struct Entry {
+    Digest key;
+    Digest output;  // of the bytes of the file
+    std::uint64_t bytes = 0;
+  };
+
+  /// Opens or makes the file and reads it. Errors: kWriteFailed, also while another process has it
+  /// open; kFileUnreadable.
+  static Result<Journal> open(const std::filesystem::path& path);
+
+  Journal(Journal&& other) noexcept;
+  Journal& operator=(Journal&&) = delete;
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+  ~Journal();
+
+  /// Whether `output` was finished with this key and is there with the bytes that were written
+  /// then: reads and digests it. What was finished, or nothing.
+  [[nodiscard]] std::optional<Entry> find(const std::filesystem::path& output,
+                                          const Digest& key) const;
+
+  /// Adds a line. Error: kWriteFailed.
+  Status add(const std::filesystem::path& output, const Entry& entry);
+
+ private:
+  Journal(std::filesystem::path path, int descriptor)
+      : path_(std::move(path)), descriptor_(descriptor) {}
+  void read(std::string_view text);
+  [[nodiscard]] std::optional<Entry> entry(const std::string& name) const;
+
+  std::filesystem::path path_;
+  int descriptor_;  // -1 after a move
+  std::map<std::string, Entry> entries_;
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // of the two above
+};
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// A cook by its key: what is there already, or in a cache, is not cooked again.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <boxtree/error.h>
+
+#include "cooker/farm/cook_cache.h"
+#include "cooker/farm/cook_key.h"
+#include "cooker/farm/journal.h"
+#include "cooker/shell/cook_job.h"
+
+namespace boxtree::cooker {
+
+/// Where outputs are looked for; both may be missing.
+struct KeyedStores {
+  const CookCache* cache = nullptr;
+  Journal* journal = nullptr;
+  /// [0] [0 to 1] The share of what the cache has that is cooked again, by chance, and compared.
+  double audit_share = 0;
+  /// What to keep with an output, for those who get it from the cache.
+  std::function<std::string(const Summary& summary)> report;
+};
+
+struct KeyedOutcome {
+  enum class How : std::uint8_t {
+    kCooked,
+    kFromCache,
+    kThere,  // the output has been there, by the journal
+  };
+  How how = How::kCooked;
+  std::uint64_t bytes = 0;           // of the output
+  std::string report;                // empty if the output has been there
+  std::optional<Summary> summary;    // of what was cooked
+  std::optional<Error> cache_fault;  // why the cache could not take the output, which is there
+};
+
+/// Whether outputs of a job can be kept under its key: not those of streams, nor those of two
+/// files.
+[[nodiscard]] bool has_keyed_output(const CookJob& job);
+
+/// Makes the output of a job, and its depfile, from the journal, from the cache or by cooking it.
+/// Kept under the key are only bytes of files that did not change while they were cooked, and that
+/// the key names: after a cook the key is computed anew. Safe for several threads with different
+/// outputs. Precondition: has_keyed_output(job), and `key` is what key_of(job) has just returned.
+///
+/// Errors: those of cook_job and Journal::add; kFileUnreadable for files that changed while they
+/// were cooked, which passes. kInternal for an internal error or a fault of the machine: a file
+/// that was read and is not in the key, or an audit that finds other bytes in the cache than the
+/// cook made; these are then in the cache, and the output.
+Result<KeyedOutcome> cook_by_key(const CookJob& job, const JobKey& key, const KeyedStores& stores,
+                                 const Progress& progress = {});
+
+}  // namespace boxtree::cooker

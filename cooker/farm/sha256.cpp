@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "cooker/farm/sha256.h"
+
+#include <charconv>
+#include <new>
+#include <openssl/evp.h>
+#include <span>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "cooker/import/whole_file.h"
+
+namespace boxtree::cooker {
+namespace {
+
+// OpenSSL fails here for want of memory alone: the digest is built in, and contexts are used once.
+void check(int result) {
+  if (result != 1) throw std::bad_alloc();
+}
+
+}  // namespace
+
+void Sha256::Free::operator()(evp_md_ctx_st* context) const {
+  EVP_MD_CTX_free(context);
+}
+
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
+  check(context_ ? EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) : 0);
+}
+
+void Sha256::add(Bytes bytes) {
+  check(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
+}
+
+void Sha256::add(std::string_view text) {
+  add(std::as_bytes(std::span(text)));
+}
+
+Digest Sha256::finish() {
+  Digest digest;
+  check(
+      EVP_DigestFinal_ex(context_.get(), reinterpret_cast<unsigned char*>(digest.data()), nullptr));
+  return digest;
+}
+
+Digest sha256_of(Bytes bytes) {
+  Sha256 sha;
+  sha.add(bytes);
+  return sha.finish();
+}
+
+Digest sha256_of(std::string_view text) {
+  return sha256_of(std::as_bytes(std::span(text)));
+}
+
+Result<Digest> sha256_of_file(const std::filesystem::path& path) {
+  Sha256 sha;
+  const Status status = read_chunks(path, kAnyBytes, [&sha](const char* bytes, std::size_t count) {
+    sha.add(std::string_view(bytes, count));
+  });
+  if (!status) return status.error();
+  return sha.finish();
+}
+
+std::string hex_of(const Digest& digest) {
+  std::string hex;
+  for (const std::byte byte : digest) hex += fmt::format("{:02x}", static_cast<unsigned>(byte));
+  return hex;
+}
+
+std::optional<Digest> digest_of(std::string_view hex) {
+  Digest digest;
+  if (hex.size() != 2 * digest.size()) return std::nullopt;
+  for (std::size_t i = 0; i < digest.size(); ++i) {
+    unsigned value = 0;
+    const char* const end = hex.data() + 2 * i + 2;
+    const auto [stopped, error] = std::from_chars(end - 2, end, value, 16);
+    if (error != std::errc() || stopped != end) return std::nullopt;
+    digest[i] = static_cast<std::byte>(value);
+  }
+  return hex_of(digest) == hex ? std::optional(digest) : std::nullopt;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Lines of a manifest, and what is wrong with lines that are none.
+#include "cooker/farm/manifest.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/require.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using test::require;
+
+TEST(Manifest, HasAJobInEachLine) {
+  const auto lines =
+      require(parse_manifest("{\"inputs\":[\"a.obj\",\"b.ply\"],\"output\":\"out/"
+                             "a.bxt\",\"options\":[\"--for\",\"memory\"]}\n"
+                             "\n  \r\n"
+                             "{ \"output\": \"s.bxt\", \"profile\": \"scene.toml\" }",
+                             "m"));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].line, 1u);
+  EXPECT_EQ(lines[0].inputs, (std::vector<std::filesystem::path>{"a.obj", "b.ply"}));
+  EXPECT_EQ(lines[0].output, "out/a.bxt");
+  EXPECT_EQ(lines[0].options, (std::vector<std::string>{"--for", "memory"}));
+  EXPECT_EQ(lines[1].line, 4u);
+  EXPECT_EQ(lines[1].profile, "scene.toml");
+  EXPECT_TRUE(require(parse_manifest("", "m")).empty());
+}
+
+std::string refusal(const std::string& text) {
+  const auto lines = parse_manifest(text, "jobs.jsonl");
+  if (lines) return "accepted";
+  EXPECT_EQ(lines.code(), Errc::kDocumentInvalid);
+  return lines.error().detail;
+}
+
+TEST(Manifest, SaysWhatIsWrongWithALine) {
+  const std::string good = "{\"inputs\":[\"a.obj\"],\"output\":\"a.bxt\"}\n";
+  EXPECT_EQ(refusal(good + "{\"inputs\":[\"b.obj\"],\"output\":\"b"),
+            "jobs.jsonl:2: expected one JSON object, found none at byte 32 of the line");
+  EXPECT_EQ(refusal(good + "7"), "jobs.jsonl:2: expected a JSON object, found number");
+  EXPECT_EQ(refusal("{\"input\":[\"a.obj\"],\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: expected inputs, output, options or profile, found \"input\"; did you "
+            "mean 'inputs'?");
+  EXPECT_EQ(refusal("{\"inputs\":\"a.obj\",\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: inputs: expected an array of texts, found string");
+  EXPECT_EQ(refusal("{\"inputs\":[7],\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: inputs: expected a text, found number");
+  EXPECT_EQ(refusal("{\"inputs\":[[\"a\"]],\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: expected arrays of texts, found arrays or objects in them");
+  EXPECT_EQ(refusal("{\"inputs\":[\"a.obj\"]}"),
+            "jobs.jsonl:1: output: expected the name of a file, found none");
+  EXPECT_EQ(refusal("{\"inputs\":[\"a.obj\"],\"output\":\"\"}"),
+            "jobs.jsonl:1: output: found an empty text");
+  EXPECT_EQ(refusal("{\"inputs\":[\"a.obj\"],\"output\":\"-\"}"),
+            "jobs.jsonl:1: output: expected a file, found -");
+  EXPECT_EQ(refusal("{\"inputs\":[\"-\"],\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: inputs: expected a file, found -");
+  EXPECT_EQ(refusal("{\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: inputs: expected names of meshes, or \"profile\" with a source; found "
+            "neither");
+}
+
+// Each would overwrite the other's, or what the other reads, in an order that nobody states.
+TEST(Manifest, RefusesOutputsThatMeetOthers) {
+  const std::string first = "{\"inputs\":[\"a.obj\"],\"output\":\"out/a.bxt\"}\n\n";
+  EXPECT_EQ(refusal(first + "{\"inputs\":[\"b.obj\"],\"output\":\"out/../out/./a.bxt\"}"),
+            "jobs.jsonl:3: output: out/../out/./a.bxt is that of line 1, too");
+  EXPECT_EQ(refusal(first + "{\"inputs\":[\"out/a.bxt\"],\"output\":\"b.bxt\"}"),
+            "jobs.jsonl:3: inputs: out/a.bxt is the output of line 1");
+  EXPECT_EQ(refusal(first + "{\"profile\":\"out/a.bxt\",\"output\":\"b.bxt\"}"),
+            "jobs.jsonl:3: inputs: out/a.bxt is the output of line 1");
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
