@@ -13,6 +13,8 @@
 #include "cooker/cli/command_app.h"
 #include "cooker/cli/exit_status.h"
 #include "cooker/cli/help_format.h"
+#include "cooker/cli/output.h"
+#include "cooker/cli/response_file.h"
 #include "cooker/cli/usage_message.h"
 #include "cooker/text/nearest_name.h"
 
@@ -122,6 +124,11 @@ Option* Option::excludes(Option* other) {
   return this;
 }
 
+Option* Option::needs(Option* other) {
+  parsed_->needs(other->parsed_);
+  return this;
+}
+
 Option* Option::one_of(const std::vector<std::string>& values) {
   CLI::IsMember member(values);  // help shows the values by its description
   member.operation([values](std::string& value) {
@@ -224,12 +231,30 @@ Command::Command(const std::string& name, const std::string& description, Comman
 
 Command::~Command() = default;
 
-std::optional<int> Command::run(int argc, char** argv) {
-  words_.assign(argv, argv + argc);
+void Command::set_words(std::vector<std::string> words) {
+  words_ = std::move(words);
   const auto end = std::find(words_.begin(), words_.end(), kEndOfOptions);
   if (end != words_.end()) behind_end_.assign(end + 1, words_.end());
+}
+
+std::string Command::take(const std::vector<std::string>& words) {
+  set_words(words);
   try {
-    app_->parse(argc, argv);
+    app_->parse(std::vector(words.rbegin(), words.rend()));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return "--help and --version are for command lines";
+    return usage_fault(app_.get(), error);
+  }
+  return {};
+}
+
+std::optional<int> Command::run(int argc, char** argv) {
+  Result<std::vector<std::string>> words =
+      with_response_files(std::vector<std::string>(argv, argv + argc));
+  if (!words) return fail(words.error());
+  set_words(std::move(*words));
+  try {
+    app_->parse(std::vector(words_.rbegin(), words_.rend() - 1));  // as CLI11 wants them
   } catch (const CLI::ParseError& error) {
     return app_->exit(error) == 0 ? 0 : kExitUsage;
   }

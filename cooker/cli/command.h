@@ -36,8 +36,8 @@ enum class Values : std::uint8_t {
   kCommands
 };
 
-/// A command line that runs as printed in a folder with bunny.obj, level.gltf and scene.toml, after
-/// those before it.
+/// A command line that runs as printed in a folder with bunny.obj, level.gltf, scene.toml and
+/// jobs.jsonl, after those before it.
 struct Example {
   std::string what;
   std::string line;
@@ -73,6 +73,8 @@ class Option {
   /// checks it.
   Option* one_is_needed();
   Option* excludes(Option* other);
+  /// It may only be given with `other`.
+  Option* needs(Option* other);
   Option* one_of(const std::vector<std::string>& values);
   /// Of a number, which is any of its type otherwise: what it has to be. `expected` is for
   /// messages, "a length above 0"; help shows `shown`.
@@ -120,9 +122,13 @@ class Command {
   Command& operator=(const Command&) = delete;
   ~Command();
 
-  /// Parses a command line and runs what it calls. The exit status if there was nothing to run:
+  /// Parses a command line, with response files (response_file.h), and runs what it calls. The exit status if there was nothing to run:
   /// that of help, which was printed, or of an error.
   std::optional<int> run(int argc, char** argv);
+
+  /// The same of words that are no command line, as those of a file: runs what they call and prints
+  /// nothing. What is wrong with them, as usage_fault; nothing if all is well.
+  [[nodiscard]] std::string take(const std::vector<std::string>& words);
 
   /// `description`: the summary and, after line feeds, paragraphs.
   Command& add_command(const std::string& name, const std::string& description);
@@ -178,6 +184,8 @@ class Command {
 
  private:
   Command(const std::string& name, const std::string& description, Command& parent);
+  /// Of the program.
+  void set_words(std::vector<std::string> words);
   Option* add(CLI::Option* parsed);
   /// Whether the command line has this word.
   [[nodiscard]] bool is_word(const std::string& word) const;

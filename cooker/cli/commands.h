@@ -8,6 +8,7 @@ class Command;
 
 /// Each adds a command to `program` and stores its exit status in `status` when it has run.
 void add_cook_command(Command& program, int& status);
+void add_key_command(Command& program, int& status);
 void add_info_command(Command& program, int& status);
 void add_verify_command(Command& program, int& status);
 void add_query_command(Command& program, int& status);

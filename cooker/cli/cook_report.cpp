@@ -507,4 +507,15 @@ std::string why_text(const Summary& summary) {
   return text;
 }
 
+Error explained(const Error& error, const CookJob& job, const std::string& output) {
+  if (error.code == Errc::kInvalidPose) {
+    return {error.code,
+            error.detail + "; --flatten makes one tree of a file, whatever its transforms"};
+  }
+  const std::string profile = job.profile.string();
+  const bool is_of_profile = !profile.empty() && error.detail.starts_with(profile + ":");
+  if (error.code == Errc::kBudgetUnreachable && !is_of_profile) return in_file(output, error);
+  return error;
+}
+
 }  // namespace boxtree::cooker

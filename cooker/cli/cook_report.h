@@ -7,6 +7,7 @@
 
 #include "cooker/cli/json_output.h"
 #include "cooker/cook.h"
+#include "cooker/shell/cook_job.h"
 
 namespace boxtree::cooker {
 
@@ -16,6 +17,10 @@ namespace boxtree::cooker {
 [[nodiscard]] Json imports_json(const std::vector<ImportReport>& imports);
 /// The trees, all warnings and every line of --why; of a scene its counts, too.
 [[nodiscard]] Json summary_json(const Summary& summary);
+
+/// What the command line adds to an error of a cook: a remedy, and the file that cannot be made,
+/// `output`, where no line of the profile stands for a budget.
+[[nodiscard]] Error explained(const Error& error, const CookJob& job, const std::string& output);
 
 /// What is wrong with a source, though it could be read; each begins with its name.
 [[nodiscard]] std::vector<std::string> warnings_of(const ImportReport& import);

@@ -28,8 +28,7 @@ Json grid_step_json(GeometryId geometry, int step_exponent) {
 }
 
 std::string document_text(const Json& document) {
-  constexpr int kSchema = 1;
-  Json whole = {{"schema", kSchema}};
+  Json whole = {{"schema", kJsonSchema}};
   whole.update(document);
   drop_signs_of_zero(whole);
   return whole.dump(2) + "\n";

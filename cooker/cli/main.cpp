@@ -83,6 +83,7 @@ int main(int argc, char** argv) {
     cooker::add_bench_command(app, status);
     cooker::add_report_command(app, status);
     cooker::add_export_command(app, status);
+    cooker::add_key_command(app, status);
     cooker::add_completion_command(app, status);
     cooker::add_help_command(app, status);
     if (const std::optional<int> ended = app.run(argc, argv); ended) status = *ended;

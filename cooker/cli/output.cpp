@@ -38,6 +38,10 @@ int fail(const Error& error) {
   return error_info(error.code).exit_status;
 }
 
+bool may_pass(const Error& error) {
+  return error.code == Errc::kOutOfMemory || error_info(error.code).exit_status == kExitInputOutput;
+}
+
 int usage(const std::string& what) {
   complain("usage: " + what);
   return kExitUsage;

@@ -16,7 +16,11 @@ void complain(std::string_view what) noexcept;
 /// Prints "boxtree: NAME: DETAIL" to standard error and returns the exit status of the error.
 int fail(const Error& error);
 
-/// The same for a command line that contradicts itself, which is called usage: kExitUsage. `what`
+/// Whether the same command may succeed when it runs again, with nothing changed but the state of
+/// the machine: exit statuses tell "try again" from "never" (docs/GUIDE.md).
+[[nodiscard]] bool may_pass(const Error& error);
+
+/// fail() for a command line that contradicts itself, which is called usage: kExitUsage. `what`
 /// begins with the command, "cook: ".
 int usage(const std::string& what);
 

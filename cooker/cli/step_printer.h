@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 #include <unistd.h>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -25,8 +26,10 @@ class StepPrinter {
         enabled_(enabled && (is_terminal_ || elsewhere == Elsewhere::kLines)) {}
   StepPrinter(const StepPrinter&) = delete;
   StepPrinter& operator=(const StepPrinter&) = delete;
-  ~StepPrinter() {
-    if (printed_) static_cast<void>(std::fputs("\r\033[K", stderr));
+  ~StepPrinter() { clear(); }
+  /// Before something else is printed.
+  void clear() {
+    if (std::exchange(printed_, false)) static_cast<void>(std::fputs("\r\033[K", stderr));
   }
   void operator()(const std::string& step) {
     if (!enabled_ || Clock::now() - start_ < (is_terminal_ ? kSoon : kLineEvery)) return;

@@ -248,15 +248,19 @@ std::string unknown_command(const Command& command, const std::string& word) {
   return start + "; expected " + listed(names) + part_that_is_one(word, names);
 }
 
-std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+std::string usage_fault(const CLI::App* app, const CLI::Error& error) {
   const Command& command = innermost(*app);
   const std::string name = name_of(command);
-  // "boxtree: usage: query ray: --origin is required"
+  // "query ray: --origin is required"
   const std::string place = name.size() > app->get_name().size()
                                 ? name.substr(app->get_name().size() + 1) + ": "
                                 : std::string();
-  return "boxtree: usage: " + place + shown(fault(*app, command, error)) + "\nSee '" + name +
-         " --help'.\n";
+  return place + fault(*app, command, error);
+}
+
+std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+  return "boxtree: usage: " + shown(usage_fault(app, error)) + "\nSee '" +
+         name_of(innermost(*app)) + " --help'.\n";
 }
 
 }  // namespace boxtree::cooker

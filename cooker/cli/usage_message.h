@@ -16,6 +16,9 @@ namespace boxtree::cooker {
 /// "'quary' is no command; did you mean 'query'?", of the commands of `command`.
 [[nodiscard]] std::string unknown_command(const Command& command, const std::string& word);
 
+/// What is wrong, without line ends: "cook: --output is required".
+[[nodiscard]] std::string usage_fault(const CLI::App* app, const CLI::Error& error);
+
 /// The message for an error of parsing, with line ends: for CLI::App::failure_message.
 [[nodiscard]] std::string usage_message(const CLI::App* app, const CLI::Error& error);
 

@@ -16,9 +16,10 @@ namespace boxtree::cooker {
 /// Two kinds of files, as in Bazel's caches: ac/KK/KEY is an entry, which says which output a key
 /// has, and cas/DD/DIGEST is an output, under the SHA-256 of its bytes. KK and DD are the first two
 /// digits. Files appear whole (rename) and are never changed; whoever reads one that is removed
-/// still has it. Nothing is trusted: an entry that is damaged, or whose output is missing or has
-/// other bytes than its name says, is none. So no lock is needed but for the size, and nothing is
-/// synced to the disk. Safe for several threads.
+/// still has it. An entry that is damaged, or whose output is missing or has other bytes than its
+/// name says, is none. So no lock is needed but for the size, and nothing is synced to the disk.
+/// This is of damage, not of intent: who can write into the folder decides what a key gives. Safe
+/// for several threads.
 class CookCache {
  public:
   struct Entry {

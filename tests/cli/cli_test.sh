@@ -534,7 +534,7 @@ misspelt() {
 }
 misspelt "boxtree: usage: 'quary' is no command; did you mean 'query'?
 See 'boxtree --help'." quary
-misspelt "boxtree: usage: 'xyzzy' is no command; expected cook, info, verify, query, bench, report, export, completion or help
+misspelt "boxtree: usage: 'xyzzy' is no command; expected cook, info, verify, query, bench, report, export, key, completion or help
 See 'boxtree --help'." xyzzy cube.bxt
 misspelt "boxtree: usage: a command is required
 See 'boxtree --help'."
@@ -558,7 +558,7 @@ misspelt "boxtree: usage: query ray: '--orgin' is no option; did you mean '--ori
 See 'boxtree query ray --help'." query cube.bxt ray --orgin 1,2,3
 misspelt "boxtree: usage: cook: '--outptu' is no option; did you mean '--output'?
 See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
-misspelt "boxtree: usage: report: '--grid-bits' is no option of report, but of cook
+misspelt "boxtree: usage: report: '--grid-bits' is no option of report, but of cook or key
 See 'boxtree report --help'." report cube.obj --grid-bits 16
 misspelt "boxtree: usage: cook: '--frobnicate' is no option
 See 'boxtree cook --help'." cook cube.obj --frobnicate

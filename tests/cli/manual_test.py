@@ -217,6 +217,7 @@ def check_examples(manual, source, folder):
         shutil.copy(source / "samples/meshes/crate.obj", folder / mesh)
     for name in ("level.gltf", "scene.toml"):
         shutil.copy(source / "samples/level" / name, folder)
+    (folder / "jobs.jsonl").write_text('{"inputs": ["bunny.obj"], "output": "job.bxt"}\n')
     (folder / "bin").mkdir()
     (folder / "bin/boxtree").symlink_to(manual.boxtree)
     path = f"{folder}/bin:{os.environ['PATH']}"

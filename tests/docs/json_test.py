@@ -45,6 +45,8 @@ BATCH = """{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}
 """
 RESULTS = '{"rows":[{"id":"S1","what":"hashes","figure":0,"limit":0,"pass":true}]}'
 
+JOB = '{"inputs":["%s.obj"],"output":"job.bxt"}'
+
 BAD = """mtllib lost.mtl
 v 0 0 0
 v 1 0 0
@@ -113,6 +115,16 @@ RUNS = {
         "cook level.gltf -o level.bxt",
         "cook --profile parts.toml -o parts.bxt",
         "cook --profile nameless.toml -o nameless.bxt",
+    ],
+    "key": ["key crate.obj", "key bad.obj crate.obj -o two.bxt --exact", "key --manifest one.jsonl"],
+    "cook --cache, --manifest": [
+        "cook crate.obj -o cached.bxt --cache cooked",
+        "cook bad.obj -o bad_cached.bxt --skip-bad --cache cooked",
+        "cook crate.obj -o cached.bxt --cache cooked",
+        "cook --manifest one.jsonl",
+        "cook --manifest one.jsonl",
+        "[3] cook --manifest bad.jsonl",
+        "[2] cook --manifest absent.jsonl",
     ],
     "info": [
         "info crate.bxt",
@@ -315,7 +327,8 @@ class Runs:
             shutil.copy(path, work)
         shutil.copy(source / "samples/level/level.gltf", work)
         for name, text in (("parts.toml", PARTS), ("nameless.toml", NAMELESS), ("batch", BATCH),
-                           ("results.json", RESULTS), ("bad.obj", BAD), ("flat.obj", FLAT), ("field.obj", FIELD),
+                           ("results.json", RESULTS), ("one.jsonl", JOB % "crate"), ("bad.jsonl", JOB % "bad"),
+                           ("absent.jsonl", JOB % "absent"), ("bad.obj", BAD), ("flat.obj", FLAT), ("field.obj", FIELD),
                            ("zones.ply", ZONES),
                            ("peers", PEERS)):
             (work / name).write_text(text)

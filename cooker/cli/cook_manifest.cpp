@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "cooker/cli/cook_manifest.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unistd.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cooker/cli/byte_size.h"
+#include "cooker/cli/cook_report.h"
+#include "cooker/cli/exit_status.h"
+#include "cooker/cli/farm_report.h"
+#include "cooker/cli/json_output.h"
+#include "cooker/cli/manifest_jobs.h"
+#include "cooker/cli/output.h"
+#include "cooker/cli/standard_streams.h"
+#include "cooker/cli/step_printer.h"
+#include "cooker/cli/worker_threads.h"
+#include "cooker/farm/job_memory.h"
+#include "cooker/farm/keyed_cook.h"
+#include "cooker/farm/run_within.h"
+#include "cooker/import/file_error.h"
+#include "cooker/write/outputs.h"
+
+namespace boxtree::cooker {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using How = KeyedOutcome::How;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::uint64_t memory_of(const FarmArguments& farm) {
+  if (!farm.memory.empty()) return *byte_size(farm.memory);  // was checked when it was parsed
+  const auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) / 2;
+}
+
+// Each shard has one, since a journal is one process's at a time. Empty: there is none.
+fs::path journal_of(const FarmArguments& farm, const Shard& shard) {
+  if (!farm.journal.empty()) return farm.journal;
+  if (is_standard_stream(farm.manifest)) return {};
+  fs::path journal = farm.manifest;
+  if (shard.count > 1) journal += fmt::format(".{}-of-{}", shard.number, shard.count);
+  journal += ".done";
+  return journal;
+}
+
+// What became of one job.
+struct Line {
+  std::size_t job;
+  double seconds = 0;
+  std::optional<Digest> key;
+  std::optional<KeyedOutcome> outcome;
+  Error error;
+};
+
+class Counts {
+ public:
+  void add(const Line& line) {
+    if (!line.outcome) {
+      ++failed_;
+      statuses_[static_cast<std::size_t>(error_info(line.error.code).exit_status)] = true;
+      may_pass_ = may_pass_ || may_pass(line.error);
+    } else {
+      ++of_[static_cast<std::size_t>(line.outcome->how)];
+    }
+  }
+
+  [[nodiscard]] std::size_t done() const { return of_[0] + of_[1] + of_[2] + failed_; }
+
+  // Errors that may pass come first: another run does their jobs.
+  [[nodiscard]] int exit_status() const {
+    if (may_pass_) return kExitInputOutput;
+    for (const int status : {kExitInternal, kExitBadInput, kExitUnsupported, kExitUsage}) {
+      if (statuses_[static_cast<std::size_t>(status)]) return status;
+    }
+    return 0;
+  }
+
+  [[nodiscard]] std::string text() const {
+    return fmt::format("{} cooked, {} from the cache, {} there already, {} failed",
+                       of_[static_cast<std::size_t>(How::kCooked)],
+                       of_[static_cast<std::size_t>(How::kFromCache)],
+                       of_[static_cast<std::size_t>(How::kThere)], failed_);
+  }
+
+ private:
+  std::array<std::size_t, 3> of_{};  // by KeyedOutcome::How
+  std::size_t failed_ = 0;
+  std::array<bool, kExitUnsupported + 1> statuses_{};
+  bool may_pass_ = false;
+};
+
+class Run {
+ public:
+  Run(const ManifestRun& run, const ManifestJobs& jobs, const Shard& shard, Journal* journal)
+      : run_(run), jobs_(jobs), shard_(shard), steps_(!run.quiet) {
+    stores_.cache = run.cache;
+    stores_.journal = journal;
+    stores_.audit_share = run.farm.audit;
+    stores_.report = keyed_report;
+  }
+
+  int work() {
+    run_on_threads(run_.threads, [this] {
+      run_within({jobs_.size(), memory_of(run_.farm),
+                  [this](std::size_t job) { return estimated_memory(jobs_.job(job)); },
+                  [this](std::size_t job) { cook(job); },
+                  [this] { return run_.farm.fail_fast && has_failed_; }});
+    });
+    return counts_.exit_status();
+  }
+
+  [[nodiscard]] std::string text() const {
+    return fmt::format("{}: {} in {:.2f} s\n", shown(input_name(run_.farm.manifest)),
+                       counts_.text(), seconds_since(start_));
+  }
+
+ private:
+  // Called by any thread.
+  void cook(std::size_t number) {
+    const Clock::time_point start = Clock::now();
+    Line line{number};
+    bool is_ours = true;
+    try {
+      is_ours = cook_into(line);
+    } catch (...) {
+      line.error = error_of_job();
+    }
+    line.seconds = seconds_since(start);
+    const std::lock_guard lock(telling_);
+    if (is_ours) {
+      counts_.add(line);
+      tell(line);
+    } else {
+      ++of_others_;
+    }
+    show_progress();
+  }
+
+  // False for a job of another shard. One without a key, since an input cannot be read, is told by
+  // one shard, too.
+  bool cook_into(Line& line) {
+    const CookJob job = jobs_.job(line.job);
+    const Result<JobKey> key = key_of(job);
+    if (key) line.key = key->key;
+    const Digest digest = key ? key->key : sha256_of(job.output.string());
+    if (shard_of(digest, shard_.count) != shard_.number) return false;
+    if (!key) {
+      line.error = key.error();
+      return true;
+    }
+    if (Status status = check_replaced(job.output, OutputKind::kCooked); !status) {
+      line.error = status.error();
+      return true;
+    }
+    Result<KeyedOutcome> outcome = cook_by_key(job, *key, stores_);
+    if (outcome) {
+      line.outcome = std::move(*outcome);
+      line.outcome->summary.reset();
+    } else {
+      line.error = explained(outcome.error(), job, job.output.string());
+    }
+    return true;
+  }
+
+  void tell(const Line& line) {
+    const std::string place = jobs_.place(line.job);
+    steps_.clear();
+    if (!line.outcome) {
+      has_failed_ = true;
+      complain(in_file(place, line.error).message());
+    } else {
+      warn_all(line.outcome->report, place);
+      if (line.outcome->cache_fault) warn_of_cache(*line.outcome->cache_fault);
+    }
+    if (!run_.json) return;
+    fmt::print("{}\n", line_of(to_json(line)));
+    static_cast<void>(std::fflush(stdout));  // a run that is killed has said what it did
+  }
+
+  // Once: what fails for one output does for all.
+  void warn_of_cache(const Error& fault) {
+    if (!std::exchange(has_warned_of_cache_, true)) warn("--cache: " + fault.detail);
+  }
+
+  [[nodiscard]] Json to_json(const Line& line) const {
+    const ManifestLine& stated = jobs_.line(line.job);
+    const std::string output = stated.output.string();
+    Json json = {{"schema", kJsonSchema}, {"line", stated.line}};
+    json.update(line.outcome ? outcome_json(output, line.key, *line.outcome, line.seconds)
+                             : error_json(output, line.key, line.error, line.seconds));
+    return json;
+  }
+
+  void show_progress() {
+    const std::size_t done = counts_.done() + of_others_;  // this one at least
+    const double seconds = seconds_since(start_);
+    const double share = static_cast<double>(done) / static_cast<double>(jobs_.size());
+    steps_(fmt::format("{} of {} jobs, {:.0f} a second, {:.0f} s left", done, jobs_.size(),
+                       static_cast<double>(done) / seconds, seconds / share - seconds),
+           share);
+  }
+
+  const ManifestRun& run_;
+  const ManifestJobs& jobs_;
+  const Shard shard_;
+  KeyedStores stores_;
+  const Clock::time_point start_ = Clock::now();
+  std::mutex telling_;  // of all below
+  StepPrinter steps_;
+  Counts counts_;
+  std::size_t of_others_ = 0;  // jobs of other shards
+  bool has_warned_of_cache_ = false;
+  std::atomic<bool> has_failed_ = false;
+};
+
+}  // namespace
+
+int cook_manifest(const ManifestRun& run) {
+  const Result<ManifestJobs> jobs = ManifestJobs::read(run.farm.manifest);
+  if (!jobs) return fail(jobs.error());
+  const Shard shard = *shard_from(run.farm.shard);  // was checked when it was parsed
+  std::optional<Journal> journal;
+  if (const fs::path path = journal_of(run.farm, shard); !path.empty()) {
+    Result<Journal> opened = Journal::open(path);
+    if (!opened) return fail(opened.error());
+    journal.emplace(std::move(*opened));
+  }
+  int status = 0;
+  std::string text;
+  {
+    Run all(run, *jobs, shard, journal ? &*journal : nullptr);
+    status = all.work();
+    text = all.text();
+  }
+  if (!run.quiet && !run.json) fmt::print("{}", text);
+  return status;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// What is said of a cook by its key.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cooker/cli/json_output.h"
+#include "cooker/farm/keyed_cook.h"
+
+namespace boxtree::cooker {
+
+/// What is kept with an output: the warnings of its cook, which whoever gets it from a cache is to
+/// be told as well.
+[[nodiscard]] std::string keyed_report(const Summary& summary);
+/// The warnings in it.
+[[nodiscard]] Json warnings_in(const std::string& report);
+
+/// Prints them as warnings; each begins with `place`, if it is not empty.
+void warn_all(const std::string& report, const std::string& place = "");
+
+/// The error of a job that ended with an exception, as main() has it for a whole program.
+/// Precondition: called in a handler.
+[[nodiscard]] Error error_of_job();
+
+/// Of a job of that output: key, bytes, where they are from, and warnings.
+[[nodiscard]] Json outcome_json(const std::string& output, const std::optional<Digest>& key,
+                                const KeyedOutcome& outcome, double seconds);
+[[nodiscard]] Json error_json(const std::string& output, const std::optional<Digest>& key,
+                              const Error& error, double seconds);
+
+}  // namespace boxtree::cooker

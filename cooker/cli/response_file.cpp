@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "cooker/cli/response_file.h"
+
+#include <string_view>
+
+#include "cooker/import/text_tokens.h"
+#include "cooker/import/whole_file.h"
+
+namespace boxtree::cooker {
+
+Result<std::vector<std::string>> with_response_files(const std::vector<std::string>& words) {
+  std::vector<std::string> all;
+  for (const std::string& word : words) {
+    if (word.size() < 2 || word[0] != '@') {
+      all.push_back(word);
+      continue;
+    }
+    const Result<std::string> text = read_whole_file(word.substr(1), kMaxFaceListBytes);
+    if (!text) return text.error();
+    for (std::string_view rest = *text; !rest.empty();) {
+      const std::string_view line = take_line(rest);
+      if (!line.empty()) all.emplace_back(line);
+    }
+  }
+  return all;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,281 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Cooks by their keys: manifests, shards, journals and caches give the bytes of single cooks, whatever fails or is killed.
+set -euo pipefail
+# shellcheck source=tests/cli/expect.sh
+. "$(dirname "$0")/expect.sh"
+boxtree=$1 level=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# A grid of N x N quads, bent by N.
+make_mesh() {
+  awk -v n="$1" 'BEGIN {
+    for (y = 0; y <= n; ++y) for (x = 0; x <= n; ++x) printf "v %d %d %.6f\n", x, y, sin(x * y / n)
+    for (y = 0; y < n; ++y) for (x = 1; x <= n; ++x) {
+      a = y * (n + 1) + x
+      printf "f %d %d %d\nf %d %d %d\n", a, a + 1, a + n + 2, a, a + n + 2, a + n + 1
+    }
+  }' >"$2"
+}
+mkdir in cooked single
+jobs=24
+for i in $(seq 1 $jobs); do
+  make_mesh $((i + 3)) "in/m$i.obj"
+  echo "{\"inputs\":[\"in/m$i.obj\"],\"output\":\"cooked/m$i.bxt\"}"
+  "$boxtree" cook "in/m$i.obj" -o "single/m$i.bxt" --quiet
+done >jobs.jsonl
+(cd single && sha256sum ./*.bxt) >single.sums
+same_as_single() { (cd "${1:-cooked}" && sha256sum -c --quiet ../single.sums); }
+count_of() { jq -s "map(select($1)) | length" out.jsonl; }
+cook_all() { expect "${status:-0}" "$boxtree" cook --manifest jobs.jsonl --json "$@"; cp out out.jsonl; }
+
+# `key`: the same for the same job, whatever the folder; a line has key, output and inputs.
+expect 0 "$boxtree" key in/m1.obj -o x.bxt
+same "$(cut -f2- out)" "$(printf 'x.bxt\tin/m1.obj')"
+key=$(cut -f1 out)
+cp in/m1.obj .
+expect 0 "$boxtree" key m1.obj --trusted --for balance
+same "$(cut -f1 out)" "$key"
+expect 0 "$boxtree" key m1.obj --exact
+[ "$(cut -f1 out)" != "$key" ]
+expect 0 "$boxtree" key m1.obj --explain
+same "$(sha256sum <out | cut -d' ' -f1)" "$key"
+expect 0 "$boxtree" key - --format obj <m1.obj
+expect 0 "$boxtree" key in/m1.obj --inputs
+same "$(cat out)" in/m1.obj
+expect 0 "$boxtree" key --manifest jobs.jsonl
+same "$(wc -l <out)" $jobs
+cp out keys
+expect 0 "$boxtree" key --manifest jobs.jsonl --json
+same "$(jq -r '.jobs[] | .key + "\t" + .output + "\t" + .inputs[0].file' out)" "$(cat keys)"
+same "$(jq -r '.jobs[0].inputs[0].sha256' out)" "$(sha256sum in/m1.obj | cut -d' ' -f1)"
+expect 1 "$boxtree" key
+expect 2 "$boxtree" key absent.obj
+expect 1 "$boxtree" key in/m1.obj --manifest jobs.jsonl
+
+# Options of a run, which no key has, change no byte.
+for option in "--jobs 1" --quiet --json --why --candidates; do
+  # shellcheck disable=SC2086 # words
+  expect 0 "$boxtree" cook in/m9.obj -o run.bxt $option
+  cmp run.bxt single/m9.bxt
+done
+expect 0 "$boxtree" cook - --format obj -o run.bxt <in/m9.obj
+
+# A manifest: the bytes of single cooks, and a second run cooks nothing.
+cook_all
+same "$(count_of '.cached or .there')" 0
+same_as_single
+same "$(jq -r '.key + "\t" + .output' out.jsonl | sort)" "$(cut -f1,2 keys | sort)"
+same "$(jq -s '[.[].bytes] | add' out.jsonl)" "$(cat cooked/*.bxt | wc -c)"
+same "$(jq -s 'map(.schema) | unique | .[]' out.jsonl)" 1
+cook_all
+same "$(count_of .there)" $jobs
+# What is away, damaged or made of another input is cooked, and nothing else.
+rm cooked/m3.bxt
+printf x >>cooked/m4.bxt
+cp cooked/m5.bxt cooked/m6.bxt
+echo '# edited' >>in/m7.obj
+cook_all
+same "$(jq -r 'select(.there | not) | .output' out.jsonl | sort | xargs)" "cooked/m3.bxt cooked/m4.bxt cooked/m6.bxt cooked/m7.bxt"
+sed -i '$d' in/m7.obj
+cook_all
+same_as_single
+
+# Killed at any moment and started again, it goes on: no output is missing, wrong or half, and nothing else is left.
+for i in $(seq 1 8); do
+  rm -rf cooked jobs.jsonl.done
+  mkdir cooked
+  "$boxtree" cook --manifest jobs.jsonl --quiet --jobs 2 &
+  sleep "0.0$((i * 2 % 10))$i"
+  kill -9 $! 2>/dev/null || true
+  wait $! 2>/dev/null || true
+  cook_all
+  same_as_single
+  same "$(find cooked -type f | wc -l)" $jobs
+done
+
+# Shards: each job once, whatever their number; a job that is added moves no other.
+for shards in 2 5; do
+  rm -rf cooked
+  mkdir cooked
+  : >all.jsonl
+  for i in $(seq 0 $((shards - 1))); do
+    cook_all --shard "$i/$shards"
+    cat out.jsonl >>all.jsonl
+    # By the first digits of the key, as anyone can tell it; python, since they fill 64 bits.
+    jq -r '.key' out.jsonl | python3 -c "
+import sys
+sys.exit(any(int(key[:16], 16) % $shards != $i for key in sys.stdin))"
+    jq -r '"'"$i"' " + .output' out.jsonl >>shards.$shards
+  done
+  same "$(wc -l <all.jsonl)" $jobs
+  same_as_single
+done
+cp jobs.jsonl before.jsonl
+make_mesh 99 in/new.obj
+echo '{"inputs":["in/new.obj"],"output":"cooked/new.bxt"}' >>jobs.jsonl
+for i in 0 1 2 3 4; do
+  cook_all --shard "$i/5" --journal "again.$i"
+  jq -r 'select(.output != "cooked/new.bxt") | "'"$i"' " + .output' out.jsonl
+done | sort >moved
+sort shards.5 | cmp - moved
+mv before.jsonl jobs.jsonl
+
+# One bad mesh fails its own line, a missing one may pass, and the others are cooked.
+rm -rf cooked
+mkdir cooked
+echo 'v 0 0 0' >in/bad.obj
+sed 's|in/m3.obj|in/bad.obj|' jobs.jsonl >bad.jsonl
+expect 3 "$boxtree" cook --manifest bad.jsonl --json
+cp out out.jsonl
+same "$(wc -l <out)" $jobs
+same "$(jq -c 'select(.error) | [.line, .error.name, .error.status, .error.may_pass]' out)" '[3,"no_faces",3,false]'
+grep -q '^boxtree: no_faces: bad.jsonl:3: in/bad.obj' err
+sed 's|in/m4.obj|in/absent.obj|' bad.jsonl >absent.jsonl
+expect 2 "$boxtree" cook --manifest absent.jsonl --json --journal absent.done
+same "$(jq -c 'select(.error) | [.line, .key == null, .error.may_pass]' out | sort | xargs)" '[3,false,false] [4,true,true]'
+# Its shard alone tells it.
+for i in 0 1 2; do "$boxtree" cook --manifest absent.jsonl --json --shard "$i/3" 2>/dev/null || true; done | jq -c 'select(.line == 4) | .line' >told
+same "$(wc -l <told)" 1
+(echo '{"inputs":["in/bad.obj"],"output":"cooked/first.bxt"}'; cat jobs.jsonl) >fast.jsonl
+expect 3 "$boxtree" cook --manifest fast.jsonl --json --fail-fast --jobs 1
+same "$(wc -l <out)" 1
+expect 3 "$boxtree" cook --manifest fast.jsonl --json --keep-going --journal keep.done
+same "$(wc -l <out)" $((jobs + 1))
+expect 1 "$boxtree" cook --manifest fast.jsonl --keep-going --fail-fast
+
+# A manifest that is none, or contradicts itself, cooks nothing.
+refused() { # MESSAGE LINE...
+  rm -f never.bxt
+  (head -1 jobs.jsonl | sed 's|cooked/m1.bxt|never.bxt|'; printf '%s\n' "${@:2}") >wrong.jsonl
+  expect 3 "$boxtree" cook --manifest wrong.jsonl
+  grep -qF "$1" err || { echo "expected '$1', found"; cat err; exit 1; }
+  [ ! -e never.bxt ]
+}
+refused 'wrong.jsonl:2: expected one JSON object' '{"inputs":["in/m2.obj"],"outp'
+refused 'wrong.jsonl:3: output: ./never.bxt is that of line 1, too' '' '{"inputs":["in/m2.obj"],"output":"./never.bxt"}'
+refused 'wrong.jsonl:2: inputs: never.bxt is the output of line 1' '{"inputs":["never.bxt"],"output":"b.bxt"}'
+refused "wrong.jsonl:2: options: cook: '--exat' is no option; did you mean '--exact'?" \
+  '{"inputs":["in/m2.obj"],"output":"b.bxt","options":["--exat"]}'
+refused 'wrong.jsonl:2: options: cook: --grid-bits: ' '{"inputs":["in/m2.obj"],"output":"b.bxt","options":["--grid-bits","99"]}'
+refused 'wrong.jsonl:2: options: ' '{"inputs":["in/m2.obj"],"output":"b.bxt","options":["--exact","--tolerance","1"]}'
+refused 'wrong.jsonl:2: options: ' '{"profile":"p.toml","output":"b.bxt","options":["--exact"]}'
+refused 'wrong.jsonl:2: options: ' '{"inputs":["in/m2.obj"],"output":"b.bxt","options":["--json"]}'
+refused 'wrong.jsonl:2: options: ' '{"inputs":["in/m2.obj"],"output":"b.bxt","options":["other.obj"]}'
+refused 'wrong.jsonl:2: options: ' '{"inputs":["in/m2.obj"],"output":"b.bxt","options":["--depfile","d"]}'
+refused 'expected another ending than .obj' '{"inputs":["in/m2.obj"],"output":"b.obj"}'
+expect 2 "$boxtree" cook --manifest absent-manifest.jsonl
+for shard in 3/3 -1/3 1 x/y 1/0 0/99999999999; do expect 1 "$boxtree" cook --manifest jobs.jsonl --shard "$shard"; done
+for memory in 0 -1 x 1X ''; do expect 1 "$boxtree" cook --manifest jobs.jsonl --memory "$memory"; done
+expect 1 "$boxtree" cook in/m1.obj -o x.bxt --shard 0/2
+expect 1 "$boxtree" cook --manifest jobs.jsonl --exact
+expect 1 "$boxtree" cook --manifest jobs.jsonl -o x.bxt
+
+# A budget for one mesh at a time, or none, is no error; lines of options and of profiles; standard input.
+rm -rf cooked jobs.jsonl.done
+mkdir cooked
+cook_all --memory 1K
+same_as_single
+printf '[scene]\nsource = "in/m2.obj"\n' >scene.toml
+{
+  echo '{"inputs":["in/m1.obj","in/m2.obj"],"output":"two.bxt","options":["--exact","--for","speed"]}'
+  echo '{"profile":"scene.toml","output":"scene.bxt"}'
+} >mixed.jsonl
+expect 0 "$boxtree" cook --manifest - --quiet <mixed.jsonl
+[ ! -s out ] || { cat out; exit 1; }
+expect 0 "$boxtree" cook in/m1.obj in/m2.obj -o two_single.bxt --exact --for speed
+cmp two.bxt two_single.bxt
+expect 0 "$boxtree" cook --profile scene.toml -o scene_single.bxt
+cmp scene.bxt scene_single.bxt
+echo 'no cooked file' >cooked/m1.bxt # would be lost
+status=2 cook_all --journal other.done
+same "$(cat cooked/m1.bxt)" 'no cooked file'
+same "$(jq -r 'select(.error) | .line' out.jsonl)" 1
+
+# The cache: single cooks and manifests have each other's outputs; damage is a miss, and is replaced.
+rm -rf cooked jobs.jsonl.done
+mkdir cooked
+expect 0 "$boxtree" cook in/m8.obj -o m8.bxt --cache cache --json
+same "$(jq .cached out)" false
+cook_all --cache cache
+same "$(jq -r 'select(.cached) | .output' out.jsonl)" cooked/m8.bxt
+same_as_single
+rm -rf cooked jobs.jsonl.done
+mkdir cooked
+cook_all --cache cache
+same "$(count_of .cached)" $jobs
+same_as_single
+expect 0 "$boxtree" cook in/m8.obj -o again.bxt --cache cache
+grep -q 'from the cache' out
+cmp again.bxt single/m8.bxt
+rm again.bxt
+digest=$(sha256sum single/m8.bxt | cut -d' ' -f1)
+damaged=cache/cas/${digest:0:2}/$digest
+for damage in 'truncate -s -1' 'truncate -s 0' 'rm' 'sed -i s/./x/40'; do
+  $damage "$damaged"
+  expect 0 "$boxtree" cook in/m8.obj -o again.bxt --cache cache --json
+  same "$(jq .cached out)" false
+  cmp again.bxt single/m8.bxt
+  rm again.bxt
+  expect 0 "$boxtree" cook in/m8.obj -o again.bxt --cache cache --json
+  same "$(jq .cached out)" true
+  cmp again.bxt single/m8.bxt
+  rm again.bxt
+done
+# Two runs at once, with journals of their own.
+rm -rf cooked two cache
+mkdir cooked two
+sed 's|cooked/|two/|' jobs.jsonl >two.jsonl
+"$boxtree" cook --manifest two.jsonl --cache cache --quiet &
+cook_all --cache cache --journal one.done
+wait $!
+same_as_single
+same_as_single two
+# One journal is one run's at a time.
+(exec 9>>jobs.jsonl.done; flock 9; status=2 cook_all; grep -q 'another process' err)
+# An audit: what the cache has is what a cook makes, or the run says so.
+expect 0 "$boxtree" cook in/m8.obj -o audited.bxt --cache cache --audit 1 --json
+same "$(jq .cached out)" false
+# A size: it is kept to.
+cook_all --cache small --cache-size 20K --journal small.done
+rm -rf cooked small small.done
+mkdir cooked
+cook_all --cache small --cache-size 20K --journal small.done
+same_as_single
+same "$(find small -type f ! -name size -printf '%s\n' | awk '{ s += $1 } END { print (s <= 20480) }')" 1
+# A folder that takes nothing.
+echo file >nofolder
+expect 2 "$boxtree" cook in/m8.obj -o x.bxt --cache nofolder
+expect 1 "$boxtree" cook in/m8.obj -o - --cache cache
+expect 1 "$boxtree" cook in/m8.obj -o x.bxt --cache cache --write-reordered r.obj
+expect 1 "$boxtree" cook in/m8.obj -o x.bxt --cache cache --why
+expect 1 "$boxtree" cook in/m8.obj -o x.bxt --audit 0.5
+expect 1 "$boxtree" cook in/m8.obj -o x.bxt --cache cache --audit 2
+# Warnings come again.
+printf 'mtllib lost.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >lost.obj
+for cached in false true; do
+  expect 0 "$boxtree" cook lost.obj -o lost.bxt --cache cache --json
+  grep -q 'warning: .*lost.mtl' err
+  same "$(jq -c '[.cached, (.warnings | length)]' out)" "[$cached,1]"
+done
+
+# Formats that assimp reads are first tried in another process, while other threads cook.
+for i in $(seq 1 12); do
+  cp "$level" "in/level$i.gltf"
+  echo "{\"inputs\":[\"in/level$i.gltf\"],\"output\":\"level$i.bxt\"}"
+  echo "{\"inputs\":[\"in/m$i.obj\"],\"output\":\"beside$i.bxt\"}"
+done >levels.jsonl
+expect 0 "$boxtree" cook --manifest levels.jsonl --jobs 8 --quiet
+expect 0 "$boxtree" cook in/level7.gltf -o level_single.bxt --quiet
+cmp level7.bxt level_single.bxt
+
+# Response files: one word a line.
+printf 'in/m1.obj\n\n-o\ntwo words.bxt\n' >words
+expect 0 "$boxtree" cook @words --quiet
+cmp 'two words.bxt' single/m1.bxt
+expect 2 "$boxtree" cook @absent
+cp in/m1.obj @m.obj
+expect 0 "$boxtree" cook ./@m.obj -o at.bxt --quiet
+echo "farm: keys, manifests, shards, journals and caches"
