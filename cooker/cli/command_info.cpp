@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -163,10 +164,18 @@ Json tree_json(const File& file, std::uint32_t index) {
   return json;
 }
 
+// As it is stored, since any tool may have written it; null if it was left out.
+Json cook_record_json(const File& file) {
+  const Bytes record = OpenFile::of(file).section(SectionKind::kCookRecord);
+  if (record.empty()) return nullptr;
+  return std::string_view(reinterpret_cast<const char*>(record.data()), record.size());
+}
+
 Json file_json(const File& file) {
   const FileHeader& header = OpenFile::of(file).container().header;
   Json json = {{"version", fmt::format("{}.{}", header.version_major, header.version_minor)},
                {"file_bytes", file.bytes().size()}};
+  json["cook_record"] = cook_record_json(file);
   json["trees"] = Json::array();
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) json["trees"].push_back(tree_json(file, i));
   json["sections"] = Json::array();

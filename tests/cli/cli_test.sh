@@ -36,6 +36,10 @@ expect 0 "$boxtree" verify cube.bxt
 expect 0 "$boxtree" info cube.bxt --json
 same "$(jq -c '.trees[0].bounds' out)" '{"min":[0,0,0],"max":[1,1,1]}'
 same "$(jq -r '.trees[0].name' out)" cube
+same "$(jq -r .cook_record out | jq -c '[.options.codec, .sources[0].name, .sources[0].faces]')" '["auto","cube",6]'
+expect 0 "$boxtree" cook cube.obj -o stripped.bxt --strip
+expect 0 "$boxtree" info stripped.bxt --json
+same "$(jq .cook_record out)" null
 
 # A grid: coarse enough to move vertices, fine enough for a tolerance, one of the two.
 expect 0 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --json

@@ -104,6 +104,7 @@ RUNS = {
         "cook field.obj -o groups.bxt --user-data groups",
         "cook --scene field.obj -o groups.bxt --user-data groups",
         "cook field.obj -o field.bxt --materials",
+        "cook field.obj -o stripped.bxt --strip",
         "cook field.obj -o no_ids.bxt --materials --no-face-ids",
         "cook zones.ply -o zones.bxt --user-data zone",
         "cook zones.ply -o idless.bxt --user-data zone --no-face-ids",
@@ -128,6 +129,7 @@ RUNS = {
     ],
     "info": [
         "info crate.bxt",
+        "info stripped.bxt",
         "info edges.bxt",
         "info field.bxt",
         "info zones.bxt",
