@@ -74,6 +74,12 @@ Json import_json(const ImportReport& report) {
   for (const std::filesystem::path& file : report.files_missing) {
     json["files_missing"].push_back(file.string());
   }
+  json["unread"] = Json::array();
+  for (const Unread& part : report.unread) {
+    json["unread"].push_back({{"what", part.what},
+                              {"count", part.count},
+                              {"line", part.line > 0 ? Json(part.line) : Json(nullptr)}});
+  }
   if (!report.groups.empty()) json["groups"] = Json::array_of(report.groups);
   if (!report.primitives.empty()) json["primitives"] = Json::array_of(report.primitives);
   json["skipped"] = Json::array();
@@ -353,6 +359,38 @@ Json summary_json(const Summary& summary) {
   return json;
 }
 
+namespace {
+
+// "curv (line 7)", "curv (3, the first in line 7)", "EXT_mesh_gpu_instancing (3)".
+std::string unread_text(const Unread& part) {
+  std::string where = part.count == 1 && part.line > 0 ? "" : fmt::format("{}", part.count);
+  if (part.line > 0) {
+    where += fmt::format("{}line {}", where.empty() ? "" : ", the first in ", part.line);
+  }
+  return fmt::format("{} ({})", shown(part.what), where);
+}
+
+// One warning for all parts that have the same remedy.
+void add_unread(const ImportReport& import, const std::string& source,
+                std::vector<std::string>& warnings) {
+  std::vector<std::pair<std::string, std::string>> lists;  // remedy, parts
+  for (const Unread& part : import.unread) {
+    const auto has_remedy = [&part](const auto& list) { return list.first == part.remedy; };
+    const auto known = std::find_if(lists.begin(), lists.end(), has_remedy);
+    if (known == lists.end()) {
+      lists.emplace_back(part.remedy, unread_text(part));
+    } else {
+      known->second += ", " + unread_text(part);
+    }
+  }
+  for (const auto& [remedy, parts] : lists) {
+    warnings.push_back(
+        fmt::format("{}: not read, and may be geometry: {}; {}", source, parts, remedy));
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> warnings_of(const ImportReport& import) {
   const std::string source = input_name(source_of(import));
   std::vector<std::string> warnings;
@@ -376,6 +414,7 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
         "{}: the last line has no end{}{}", source,
         import.has_half_face ? " and is half a face, which is left out" : "", kAsIfCut));
   }
+  add_unread(import, source, warnings);
   if (import.moved_by_f32 > 0) {
     std::string remedy = cook_remedy_of(import.f32_loss);
     if (import.f32_loss != F32Loss::kReader) {

@@ -24,7 +24,10 @@
 #include "cooker/import/f32_digits.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/flatten.h"
+#include "cooker/import/gltf_extensions.h"
 #include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_positions.h"
+#include "cooker/import/gltf_primitives.h"
 #include "cooker/import/gltf_user_data.h"
 #include "cooker/import/node_graph.h"
 #include "cooker/import/scene_intake.h"
@@ -158,23 +161,41 @@ Status try_reading(const SourceFile& source) {
   });
 }
 
-Result<StatedFaces> read_stated_faces(const SourceFile& source) {
+struct GltfFacts {
+  StatedFaces faces;
+  bool is_quantized = false;  // has_quantized_positions
+};
+
+// Checks a glTF file before assimp reads it.
+Result<GltfFacts> check_gltf(const SourceFile& source, ImportReport& report) {
   const Result<Json> document = read_gltf(source);
   if (!document.ok()) return document.error();
-  return stated_faces(*document);
+  Status status = check_required_extensions(*document);
+  if (status.ok()) status = check_types(*document);
+  if (!status.ok()) return in_file(source.title(), status.error());
+  if (const std::size_t nodes = count_instanced_nodes(*document); nodes > 0) {
+    report.unread.push_back({kInstancing, nodes, 0, kInstancingRemedy});
+  }
+  return GltfFacts{stated_faces(*document), has_quantized_positions(*document)};
 }
 
-// Of each mesh of a glTF file, its user data. Read anew, so that the document is not kept while the
-// scene is read.
-Result<std::vector<std::uint32_t>> read_user_data(const SourceFile& source,
-                                                  const ImportOptions& options,
-                                                  const aiScene& scene, ImportReport& report) {
-  if (options.user_data.empty()) return std::vector<std::uint32_t>();
+// What assimp has not read of a glTF file: positions that are no f32, and of each mesh its user
+// data. The document is read anew, so that it is not kept while the scene is read.
+Result<std::vector<std::uint32_t>> complete_gltf(const SourceFile& source, const GltfFacts& facts,
+                                                 const ImportOptions& options, aiScene& scene,
+                                                 ImportReport& report) {
+  if (!facts.is_quantized && options.user_data.empty()) return std::vector<std::uint32_t>();
   const Result<Json> document = read_gltf(source);
   if (!document.ok()) return document.error();
+  if (facts.is_quantized) {
+    const Status status = read_quantized_positions(*document, scene);
+    if (!status.ok()) return in_file(source.title(), status.error());
+  }
+  if (options.user_data.empty()) return std::vector<std::uint32_t>();
   const Result<PrimitiveNumbers> numbers = numbers_of_primitives(*document, options.user_data);
   if (!numbers.ok()) return in_file(source.title(), numbers.error());
-  Result<std::vector<std::uint32_t>> of_meshes = numbers_of_meshes(*document, *numbers, scene);
+  Result<std::vector<std::uint32_t>> of_meshes =
+      numbers_of_meshes(*document, *numbers, scene, "user data of faces");
   if (!of_meshes.ok()) return in_file(source.title(), of_meshes.error());
   if (options.user_data == kPrimitives) report.primitives = names_of_primitives(*document);
   return of_meshes;
@@ -220,23 +241,23 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
                           ImportWanted wanted, ImportedFile& out) {
   const Result<TextFacts> text = check_text(source);
   if (!text.ok()) return text.error();
-  const Result<StatedFaces> stated = read_stated_faces(source);
-  if (!stated.ok()) return stated.error();
+  ImportReport report;
+  const Result<GltfFacts> gltf = check_gltf(source, report);
+  if (!gltf.ok()) return gltf.error();
   if (options.try_first) {
     const Status tried = try_reading(source);
     if (!tried.ok()) return in_file(source.title(), tried.error());
   }
-  ImportReport report;
   report.has_open_end = text->has_open_end;
   SourceUse use;
   auto scene = read_scene(source, FaceOrder::kOfFile, use);
   if (!scene.ok()) return in_file(source.title(), scene.error());
-  if (Status status = check_stated_faces(*stated, *scene.value()); !status.ok()) {
+  if (Status status = check_stated_faces(gltf->faces, *scene.value()); !status.ok()) {
     return in_file(source.title(), status.error());
   }
   report.files_read = use.files;
   const Result<std::vector<std::uint32_t>> user_data =
-      read_user_data(source, options, *scene.value(), report);
+      complete_gltf(source, *gltf, options, *scene.value(), report);
   if (!user_data.ok()) return user_data.error();
   Status status =
       take_over(source, wanted, *scene.value(),

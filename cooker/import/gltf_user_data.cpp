@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads extras, and walks the nodes of the document and of assimp side by side.
+// Reads extras.
 #include "cooker/import/gltf_user_data.h"
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 #include <string_view>
 #include <utility>
 
-#include <assimp/scene.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_primitives.h"
 #include "cooker/import/import.h"
 #include "cooker/text/nearest_name.h"
 
@@ -27,18 +27,6 @@ using Json = nlohmann::json;
 
 Error refusal(std::string_view wanted, const std::string& why) {
   return {Errc::kMeshUnsupported, fmt::format("user data of faces '{}': {}", wanted, why)};
-}
-
-// The text of a key; empty if there is none.
-std::string text_at(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-// The element of a list, or null.
-const Json& element_at(const Json& list, std::uint64_t index) {
-  static const Json kNone;
-  return index < list.size() ? list[index] : kNone;
 }
 
 // JSON has one type of numbers: 7.0 is an integer. Those below zero are the same 32 bits.
@@ -69,21 +57,6 @@ std::array<Owner, 3> owners_of(const Json& document, const Json& mesh, const Jso
   const Json& material = element_at(materials, number_at(primitive, "material", materials.size()));
   return {Owner{extras_of(primitive), "it"}, Owner{extras_of(material), "its material"},
           Owner{extras_of(mesh), "its mesh"}};
-}
-
-// Calls visit(mesh, number of the mesh, primitive, its number in the mesh) for each primitive.
-template <class Visit>
-void visit_primitives(const Json& document, const Visit& visit) {
-  const Json& meshes = array_at(document, "meshes");
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const Json& primitives = array_at(meshes[m], "primitives");
-    for (std::size_t p = 0; p < primitives.size(); ++p) visit(meshes[m], m, primitives[p], p);
-  }
-}
-
-std::string name_of(const Json& mesh, std::size_t number) {
-  std::string name = text_at(mesh, "name");
-  return name.empty() ? fmt::format("mesh {}", number) : name;
 }
 
 // Names of integers in extras, for the message about one that is not there.
@@ -127,7 +100,7 @@ Result<PrimitiveNumbers> numbers_in_extras(const Json& document, const std::stri
         fault = fmt::format(
             "primitive {} of mesh '{}': user data of faces '{}': expected an "
             "integer of 32 bits, found {} in the extras of {}",
-            p, name_of(mesh, m), wanted, value->dump(), owner.what);
+            p, name_of_mesh(mesh, m), wanted, value->dump(), owner.what);
       }
       number = integer.value_or(0);
       break;
@@ -160,61 +133,11 @@ Result<PrimitiveNumbers> numbers_of_primitives(const Json& document, const std::
 std::vector<std::string> names_of_primitives(const Json& document) {
   std::vector<std::string> names;
   visit_primitives(document, [&](const Json& mesh, std::size_t m, const Json&, std::size_t p) {
-    const std::string name = name_of(mesh, m);
+    const std::string name = name_of_mesh(mesh, m);
     const bool is_one = array_at(mesh, "primitives").size() == 1;
     names.push_back(is_one ? name : fmt::format("{}-{}", name, p));
   });
   return names;
-}
-
-Result<std::vector<std::uint32_t>> numbers_of_meshes(const Json& document,
-                                                     const PrimitiveNumbers& numbers,
-                                                     const aiScene& scene) {
-  const Error other_nodes{Errc::kImportFailed,
-                          "user data of faces: assimp has read other nodes than the file has"};
-  const Json& nodes = array_at(document, "nodes");
-  const Json& scenes = array_at(document, "scenes");
-  const Json& roots = array_at(element_at(scenes, number_at(document, "scene", 0)), "nodes");
-  std::vector<std::optional<std::uint32_t>> found(scene.mNumMeshes);
-  std::vector<std::pair<const Json*, const aiNode*>> stack;
-  const auto push = [&](const Json& listed, const aiNode& parent) {
-    if (listed.size() != parent.mNumChildren) return false;
-    for (std::size_t i = 0; i < listed.size(); ++i) {
-      if (!listed[i].is_number_unsigned()) return false;
-      stack.emplace_back(&element_at(nodes, listed[i].get<std::uint64_t>()), parent.mChildren[i]);
-    }
-    return true;
-  };
-  // Of several roots assimp makes one.
-  if (roots.size() == 1 && roots[0].is_number_unsigned()) {
-    stack.emplace_back(&element_at(nodes, roots[0].get<std::uint64_t>()), scene.mRootNode);
-  } else if (!push(roots, *scene.mRootNode)) {
-    return other_nodes;
-  }
-  while (!stack.empty()) {
-    const auto [node, read] = stack.back();
-    stack.pop_back();
-    const std::uint64_t mesh = number_at(*node, "mesh", numbers.size());
-    const std::size_t primitives = mesh < numbers.size() ? numbers[mesh].size() : 0;
-    if (read->mNumMeshes != primitives) return other_nodes;
-    for (std::size_t p = 0; p < primitives; ++p) {
-      if (read->mMeshes[p] >= found.size()) return other_nodes;
-      found[read->mMeshes[p]] = numbers[mesh][p];
-    }
-    if (!push(array_at(*node, "children"), *read)) return other_nodes;
-  }
-  std::vector<std::uint32_t> of_meshes;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[m];
-    if (!found[m] && mesh.mNumFaces > 0) {
-      return Error{Errc::kMeshUnsupported,
-                   fmt::format("user data of faces: no node of the scene has mesh '{}', so that "
-                               "it is not known which one it is",
-                               mesh.mName.C_Str())};
-    }
-    of_meshes.push_back(found[m].value_or(0));
-  }
-  return of_meshes;
 }
 
 }  // namespace boxtree::cooker

@@ -8,16 +8,13 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <boxtree/error.h>
 
-struct aiScene;
+#include "cooker/import/gltf_primitives.h"
 
 namespace boxtree::cooker {
-
-/// A number for each primitive of each mesh of a document.
-using PrimitiveNumbers = std::vector<std::vector<std::uint32_t>>;
 
 /// The numbers that ImportOptions::user_data specifies as `wanted`. Errors, without the name of the
 /// file: kMeshUnsupported for glTF 1, and if the document has no number of that name;
@@ -28,12 +25,5 @@ Result<PrimitiveNumbers> numbers_of_primitives(const nlohmann::json& document,
 /// The names of all primitives, in the order of kPrimitives: that of their mesh, with their number
 /// in it if it has several.
 [[nodiscard]] std::vector<std::string> names_of_primitives(const nlohmann::json& document);
-
-/// The numbers of aiScene::mMeshes. kMeshUnsupported for a mesh with faces that no node of the
-/// scene places, kImportFailed if assimp's nodes are not those of the document. Precondition:
-/// `numbers` is of `document`.
-Result<std::vector<std::uint32_t>> numbers_of_meshes(const nlohmann::json& document,
-                                                     const PrimitiveNumbers& numbers,
-                                                     const aiScene& scene);
 
 }  // namespace boxtree::cooker

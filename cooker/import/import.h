@@ -67,6 +67,14 @@ struct SkippedFace {
   std::uint32_t mesh = 0;  // the mesh of the face, in SourceScene::meshes, or kNoMesh
 };
 
+/// What a source has that may be geometry and is not read.
+struct Unread {
+  std::string what;       // as the format calls it: "curv", "EXT_mesh_gpu_instancing"
+  std::size_t count = 0;  // how often it is there
+  std::size_t line = 0;   // the first, from 1; 0 in files that are no text
+  std::string remedy;
+};
+
 /// All changes that import made to the source.
 struct ImportReport {
   std::size_t meshes = 0;           // mesh instances flattened into the result
@@ -95,6 +103,7 @@ struct ImportReport {
   bool has_half_face = false;       // OBJ: that line is a face of two corners or fewer, left out
   std::vector<std::string> groups;  // with kGroups: names, in the order of their numbers
   std::vector<std::string> primitives;  // with kPrimitives: likewise; those of a mesh are numbered
+  std::vector<Unread> unread;           // in the order of the file
   std::vector<SkippedFace> skipped;     // only with ImportOptions::skip_bad
   /// The file itself and every file it refers to; none for ImportOptions::bytes.
   std::vector<std::filesystem::path> files_read;

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "cooker/import/gltf_extensions.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cooker/import/gltf_faces.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using Json = nlohmann::json;
+
+// Extensions of these kinds, whoever defines them, are of what covers faces or lights them.
+constexpr std::array<std::string_view, 3> kKindsWithoutGeometry = {"materials_", "texture_",
+                                                                   "lights_"};
+
+constexpr std::array<std::string_view, 9> kWithoutGeometry = {
+    "KHR_animation_pointer",    // animations, of which none is read
+    "KHR_techniques_webgl",     // shaders of materials
+    "KHR_xmp",                  // metadata, as the next five
+    "KHR_xmp_json_ld",          //
+    "EXT_structural_metadata",  //
+    "EXT_feature_metadata",     //
+    "EXT_mesh_features",        //
+    "EXT_instance_features",    //
+    "KHR_binary_glTF",          // glTF 1: where the buffer is, which assimp reads
+};
+
+// Those that change geometry and are read: gltf_positions.h.
+constexpr std::string_view kQuantization = "KHR_mesh_quantization";
+
+struct Remedy {
+  std::string_view extension;
+  const char* text;
+};
+constexpr std::array kRemedies = {
+    Remedy{"KHR_draco_mesh_compression",
+           "export it without Draco (in Blender: Compression off; gltf-pipeline: without -d)"},
+    Remedy{"EXT_meshopt_compression", "write it uncompressed (gltfpack: without -c and -cc)"},
+    Remedy{"KHR_meshopt_compression", "write it uncompressed (gltfpack: without -c and -cc)"},
+    Remedy{kInstancing, kInstancingRemedy},
+};
+
+bool cannot_change_geometry(std::string_view extension) {
+  const std::size_t vendor = extension.find('_');
+  const std::string_view kind =
+      vendor == std::string_view::npos ? std::string_view() : extension.substr(vendor + 1);
+  const auto is_of = [kind](std::string_view known) { return kind.starts_with(known); };
+  return std::any_of(kKindsWithoutGeometry.begin(), kKindsWithoutGeometry.end(), is_of) ||
+         std::find(kWithoutGeometry.begin(), kWithoutGeometry.end(), extension) !=
+             kWithoutGeometry.end();
+}
+
+}  // namespace
+
+Status check_required_extensions(const Json& document) {
+  for (const Json& listed : array_at(document, "extensionsRequired")) {
+    if (!listed.is_string()) continue;
+    const std::string extension = listed.get<std::string>();
+    if (extension == kQuantization || cannot_change_geometry(extension)) continue;
+    const auto known = std::find_if(kRemedies.begin(), kRemedies.end(), [&](const Remedy& remedy) {
+      return remedy.extension == extension;
+    });
+    return Error{
+        Errc::kImportFailed,
+        fmt::format("it requires the extension {} of glTF, which is not read and can "
+                    "change its geometry; {}",
+                    extension, known != kRemedies.end() ? known->text : "export it without that")};
+  }
+  return {};
+}
+
+std::size_t count_instanced_nodes(const Json& document) {
+  const Json& nodes = array_at(document, "nodes");
+  return static_cast<std::size_t>(std::count_if(nodes.begin(), nodes.end(), [](const Json& node) {
+    const auto extensions = node.find("extensions");
+    return extensions != node.end() && extensions->contains(kInstancing);
+  }));
+}
+
+}  // namespace boxtree::cooker

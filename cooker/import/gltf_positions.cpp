@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "cooker/import/gltf_positions.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_primitives.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using Json = nlohmann::json;
+
+// Values of componentType (glTF 2.0 specification, 5.1.3).
+constexpr std::uint32_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123;
+constexpr std::uint32_t kUnsignedInt = 5125, kFloat = 5126;
+
+// How the positions of a primitive are stored: its componentType, and this where it is normalized.
+constexpr std::uint32_t kNormalized = 0x10000;
+
+struct Component {
+  std::uint32_t type;
+  const char* name;
+  std::uint64_t bytes;
+};
+constexpr std::array kComponents = {
+    Component{kByte, "BYTE", 1},
+    Component{kUnsignedByte, "UNSIGNED_BYTE", 1},
+    Component{kShort, "SHORT", 2},
+    Component{kUnsignedShort, "UNSIGNED_SHORT", 2},
+    Component{kUnsignedInt, "UNSIGNED_INT", 4},
+    Component{kFloat, "FLOAT", 4},
+};
+
+const Component* component_of(const Json& accessor) {
+  const std::uint64_t type = number_at(accessor, "componentType", 0);
+  const auto found = std::find_if(kComponents.begin(), kComponents.end(),
+                                  [type](const Component& each) { return each.type == type; });
+  return found == kComponents.end() ? nullptr : &*found;
+}
+
+// The accessor of that name in `object`; null if there is none, which the reader refuses if it
+// needs one.
+const Json& accessor_at(const Json& document, const Json& object, const char* key) {
+  const Json& accessors = array_at(document, "accessors");
+  return element_at(accessors, number_at(object, key, accessors.size()));
+}
+
+const Json& positions_of(const Json& document, const Json& primitive) {
+  static const Json kNone;
+  const auto attributes = primitive.find("attributes");
+  return attributes == primitive.end() ? kNone : accessor_at(document, *attributes, "POSITION");
+}
+
+// Of a primitive without positions, that of f32, which are left alone.
+std::uint32_t storage_of(const Json& document, const Json& primitive) {
+  const Json& accessor = positions_of(document, primitive);
+  const Component* const component = component_of(accessor);
+  if (component == nullptr || component->type == kFloat) return kFloat;
+  const auto normalized = accessor.find("normalized");
+  const bool is_normalized = normalized != accessor.end() && *normalized == true;
+  return component->type | (is_normalized ? kNormalized : 0);
+}
+
+// "VEC2 of SHORT", as the file has it.
+std::string type_of(const Json& accessor) {
+  const auto type = accessor.find("type");
+  const Component* const component = component_of(accessor);
+  return fmt::format(
+      "{} of {}",
+      type != accessor.end() && type->is_string() ? type->get<std::string>() : "no type",
+      component != nullptr
+          ? component->name
+          : fmt::format("component type {}", number_at(accessor, "componentType", 0)).c_str());
+}
+
+bool has_type(const Json& accessor, const char* type) {
+  const auto found = accessor.find("type");
+  return found != accessor.end() && *found == type;
+}
+
+// Why positions cannot be read; empty if they can.
+std::string fault_of_positions(const Json& document, const Json& accessor) {
+  if (!accessor.is_object()) return {};
+  const Component* const component = component_of(accessor);
+  if (!has_type(accessor, "VEC3") || component == nullptr || component->type == kUnsignedInt) {
+    return fmt::format(
+        "positions are {}; expected VEC3 of FLOAT, or of 8 or 16 bits by KHR_mesh_quantization",
+        type_of(accessor));
+  }
+  if (!accessor.contains("sparse")) return {};
+  const Json& views = array_at(document, "bufferViews");
+  const Json& view = element_at(views, number_at(accessor, "bufferView", views.size()));
+  const std::uint64_t packed = 3 * component->bytes;
+  if (!view.is_object() || number_at(view, "byteStride", packed) == packed) return {};
+  return "positions are sparse among other data of a bufferView, which is not read; export them "
+         "without sparse accessors";
+}
+
+std::string fault_of_vertex_numbers(const Json& accessor) {
+  if (!accessor.is_object()) return {};
+  const Component* const component = component_of(accessor);
+  const bool is_unsigned = component != nullptr &&
+                           (component->type == kUnsignedByte || component->type == kUnsignedShort ||
+                            component->type == kUnsignedInt);
+  if (is_unsigned && has_type(accessor, "SCALAR")) return {};
+  return fmt::format(
+      "vertex numbers are {}; expected SCALAR of UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT",
+      type_of(accessor));
+}
+
+// Integers as the specification (3.11) and KHR_mesh_quantization define them. T is their type.
+template <class T>
+float value_of(T stored, bool is_normalized) {
+  if (!is_normalized) return static_cast<float>(stored);
+  const double part = static_cast<double>(stored) / double{std::numeric_limits<T>::max()};
+  return static_cast<float>(std::max(part, -1.0));
+}
+
+// Assimp copies the bytes of each element to the begin of a vertex.
+template <class T>
+void read_vertices(aiMesh& mesh, bool is_normalized) {
+  for (unsigned vertex = 0; vertex < mesh.mNumVertices; ++vertex) {
+    std::array<T, 3> stored;
+    static_assert(sizeof(stored) <= sizeof(aiVector3D));
+    aiVector3D& position = mesh.mVertices[vertex];
+    std::memcpy(stored.data(), &position, sizeof(stored));
+    position = {value_of(stored[0], is_normalized), value_of(stored[1], is_normalized),
+                value_of(stored[2], is_normalized)};
+  }
+}
+
+void read_vertices(aiMesh& mesh, std::uint32_t storage) {
+  const bool is_normalized = (storage & kNormalized) != 0;
+  if (mesh.mVertices == nullptr) return;
+  switch (storage & ~kNormalized) {
+    case kByte:
+      return read_vertices<std::int8_t>(mesh, is_normalized);
+    case kUnsignedByte:
+      return read_vertices<std::uint8_t>(mesh, is_normalized);
+    case kShort:
+      return read_vertices<std::int16_t>(mesh, is_normalized);
+    case kUnsignedShort:
+      return read_vertices<std::uint16_t>(mesh, is_normalized);
+    default:
+      return;
+  }
+}
+
+}  // namespace
+
+Status check_types(const Json& document) {
+  std::string fault;
+  visit_primitives(
+      document, [&](const Json& mesh, std::size_t m, const Json& primitive, std::size_t p) {
+        if (!fault.empty()) return;
+        fault = fault_of_positions(document, positions_of(document, primitive));
+        if (fault.empty())
+          fault = fault_of_vertex_numbers(accessor_at(document, primitive, "indices"));
+        if (!fault.empty())
+          fault = fmt::format("mesh '{}', primitive {}: {}", name_of_mesh(mesh, m), p, fault);
+      });
+  if (fault.empty()) return {};
+  return Error{Errc::kImportFailed, std::move(fault)};
+}
+
+bool has_quantized_positions(const Json& document) {
+  bool is_any = false;
+  visit_primitives(document, [&](const Json&, std::size_t, const Json& primitive, std::size_t) {
+    is_any |= storage_of(document, primitive) != kFloat;
+  });
+  return is_any;
+}
+
+Status read_quantized_positions(const Json& document, aiScene& scene) {
+  PrimitiveNumbers storage(array_at(document, "meshes").size());
+  visit_primitives(document, [&](const Json&, std::size_t m, const Json& primitive, std::size_t) {
+    storage[m].push_back(storage_of(document, primitive));
+  });
+  const Result<std::vector<std::uint32_t>> of_meshes =
+      numbers_of_meshes(document, storage, scene, "quantized positions");
+  if (!of_meshes.ok()) return of_meshes.error();
+  for (unsigned mesh = 0; mesh < scene.mNumMeshes; ++mesh) {
+    read_vertices(*scene.mMeshes[mesh], (*of_meshes)[mesh]);
+  }
+  return {};
+}
+
+}  // namespace boxtree::cooker
