@@ -49,6 +49,14 @@ std::string_view library_of(std::string_view statement) {
                              : std::string_view();
 }
 
+// Statements that make and place no face: attributes of vertices and faces, names, and how to draw.
+constexpr std::array<std::string_view, 18> kWithoutGeometry = {
+    "vt",     "vn",     "vp",    "g",        "o",        "s",   "mg",         "usemtl",    "mtllib",
+    "usemap", "maplib", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech"};
+
+// Different statements that are listed, of those that are not read: more are counted as one.
+constexpr std::size_t kMostListed = 32;
+
 // Counted from 1, or backwards from -1; nothing if not a number. Numbers of texture coordinates and
 // normals may follow, and nothing else: 7, 7/1, 7/1/2, 7//2.
 std::optional<std::int64_t> corner_number(std::string_view word) {
@@ -84,6 +92,7 @@ class Reader {
   Status read_statement();
   Status read_element();
   Status read_face();
+  void add_unread(std::string_view keyword);
   [[nodiscard]] bool is_cut() const;
   [[nodiscard]] std::optional<std::uint32_t> vertex_of(std::string_view word) const;
   [[nodiscard]] FaceFault fault_of(std::string_view word, std::size_t corner) const;
@@ -163,12 +172,37 @@ Status Reader<T>::read_statement() {
   }
   if (const std::string_view library = library_of(text); !library.empty())
     libraries_.emplace_back(library);
+  // Vertex numbers count those of that file, too.
+  if (keyword == "call") {
+    return failure(
+        fmt::format("'call' reads another file here, {}; write the lines of that file in its place",
+                    name.empty() ? "which it does not name" : name));
+  }
+  if (std::find(kWithoutGeometry.begin(), kWithoutGeometry.end(), keyword) ==
+      kWithoutGeometry.end()) {
+    add_unread(keyword);
+  }
   return {};
 }
 
 template <class T>
+void Reader<T>::add_unread(std::string_view keyword) {
+  std::vector<Unread>& unread = report_.unread;
+  const auto is_same = [&keyword](const Unread& each) { return each.what == keyword; };
+  auto known = std::find_if(unread.begin(), unread.end(), is_same);
+  if (known == unread.end() && unread.size() > kMostListed) --known;
+  if (known == unread.end()) {
+    const bool is_last = unread.size() == kMostListed;
+    unread.push_back({is_last ? "other statements" : std::string(keyword), 0, statement_.line,
+                      "faces are read from 'f' alone: convert curves and surfaces to polygons"});
+    known = unread.end() - 1;
+  }
+  ++known->count;
+}
+
+template <class T>
 Status Reader<T>::read_element() {
-  const bool is_face = statement_.text[0] == 'f';
+  const bool is_face = statement_.text[0] == 'f';  // f or fo
   split_tokens(joined_text(statement_, joined_), words_);
   if (is_face) {
     words_.erase(words_.begin());

@@ -35,7 +35,7 @@ std::size_t find_of(const std::array<bool, 256>& set, std::string_view text, std
 bool has_numbers(std::string_view text) {
   const std::string_view keyword = text.substr(0, text.find_first_of(" \t\\"));
   return keyword == "v" || keyword == "f" || keyword == "l" || keyword == "p" || keyword == "vt" ||
-         keyword == "vn" || keyword == "vp" || keyword == "s";
+         keyword == "vn" || keyword == "vp" || keyword == "s" || keyword == "fo";
 }
 
 bool begins_with(std::string_view text, std::string_view keywords) {
@@ -50,7 +50,7 @@ bool ObjStatement::is_vertex() const {
 }
 
 bool ObjStatement::is_element() const {
-  return begins_with(text, "flp");
+  return begins_with(text, "flp") || (text.starts_with("fo") && begins_with(text.substr(1), "o"));
 }
 
 std::string_view statements_of(std::string_view text) {

@@ -13,7 +13,7 @@ struct ObjStatement {
   std::size_t line;       // of its first line, from 1
 
   [[nodiscard]] bool is_vertex() const;
-  /// A statement of vertex numbers: f, l or p.
+  /// A statement of vertex numbers: f, fo (f in files of version 2), l or p.
   [[nodiscard]] bool is_element() const;
 };
 

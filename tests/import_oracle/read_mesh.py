@@ -232,8 +232,6 @@ class Obj:
         if keyword == "v":
             mesh.vertices.append(self.position(values))
         elif keyword in ("f", "fo"):
-            if keyword == "fo":
-                mesh.note("fo, an old spelling of f")
             self.face(values)
         elif keyword in ("l", "p"):
             self.line_or_points(keyword, values)
@@ -241,8 +239,10 @@ class Obj:
             self.material = text.strip(" \t\f\v")[6:].strip(" \t\f\v")
             if not self.material:
                 mesh.note("usemtl without a name")
-        elif keyword in OBJ_FREE_FORM or keyword in ("call", "csh"):
-            mesh.note("free-form geometry or a call")
+        elif keyword == "call":
+            raise Refused("call: the statements of another file are missing")
+        elif keyword in OBJ_FREE_FORM or keyword == "csh":
+            mesh.note("free-form geometry or a command")
         elif keyword in OBJ_IGNORED:
             fewest = 3 if keyword == "vn" else 1
             if keyword in ("vt", "vn", "vp") and not (

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Spellings of text formats behind which readers lose statements, and texts that were cut short.
 #include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "cooker/import/source_scene.h"
 #include "temp_files.h"
@@ -194,6 +197,48 @@ TEST_F(TextFormatTest, CommentsBehindNormalsEndWithTheirLine) {
   for (const char* statement : {"vn 0 0 1 # C:\\", "vt 0 0 # C:\\", "s 1 # C:\\"}) {
     expect_triangle("a.obj", kVertices + statement + "\nf 1 2 3\n", corners_);
   }
+}
+
+// Found by a newcomer: "fo", the name of "f" in files of version 2, was no face.
+TEST_F(TextFormatTest, OldFacesOfObjAreFaces) {
+  const Imported got = load("a.obj", kVertices + "fo 1 2 3 # a\nfo 1 3 \\\n2\nf 2 3 1\n");
+  EXPECT_EQ(got.mesh.faces.size(), 3u);
+  EXPECT_TRUE(got.report.unread.empty());
+  EXPECT_EQ(load("b.obj", kVertices + "f 1 2 3\nfoo 1 3 2\nfo\n").mesh.faces.size(), 1u);
+}
+
+// Found by a newcomer: free-form surfaces and unknown statements were lost in silence.
+TEST_F(TextFormatTest, StatementsOfObjThatAreNotReadAreReported) {
+  const Imported got =
+      load("a.obj", kVertices +
+                        "vt 0 0\nvn 0 0 1\nvp 0\ng a\no a\ns 1\nmg 1 2\nusemtl a\nlod 1\n"
+                        "f 1 2 3\nl 1 2\np 1\ncstype bezier\ndeg 1\nsurf 0 1 0 1 1 2 3\nend\n"
+                        "surf 0 1 0 1 \\\n1 2 3\nface 1 2 3\nend");
+  std::vector<std::string> found;
+  for (const Unread& part : got.report.unread) {
+    found.push_back(part.what + " " + std::to_string(part.count) + " " + std::to_string(part.line));
+  }
+  EXPECT_EQ(found, (std::vector<std::string>{"cstype 1 16", "deg 1 17", "surf 2 18", "end 2 19",
+                                             "face 1 22"}));
+}
+
+TEST_F(TextFormatTest, FewStatementsOfObjThatAreNotReadAreListed) {
+  std::string text = kVertices + "f 1 2 3\n";
+  for (int i = 0; i < 100; ++i) text += "x" + std::to_string(i) + "\nx0\n";
+  const std::vector<Unread> unread = load("a.obj", text).report.unread;
+  ASSERT_EQ(unread.size(), 33u);
+  EXPECT_EQ(unread[0].count, 101u);
+  EXPECT_EQ(unread[31].what, "x31");
+  EXPECT_EQ(unread[32].what, "other statements");
+  EXPECT_EQ(unread[32].count, 68u);
+  EXPECT_EQ(unread[32].line, 5u + 2 * 32);
+}
+
+// Found by a newcomer: the faces of another file were lost in silence.
+TEST_F(TextFormatTest, CallsOfObjAreRefused) {
+  const Error error = fail("a.obj", kVertices + "f 1 2 3\ncall other.obj\n");
+  EXPECT_EQ(error.code, Errc::kImportFailed);
+  EXPECT_TRUE(has(error.detail, "line 5: 'call' reads another file here, other.obj; write the"));
 }
 
 TEST_F(TextFormatTest, FacesBeforeTheFirstMaterialHaveNone) {
