@@ -7,6 +7,7 @@
 #include <bit>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -59,6 +60,7 @@ class Reader {
   Status read();
 
  private:
+  [[nodiscard]] bool is_padding();
   Status read_element(const PlyElement& element);
   Status read_vertices();
   Status read_faces();
@@ -95,7 +97,22 @@ Status Reader<T>::read() {
     if (Status status = read_element(element); !status.ok()) return status;
     if (&element == layout_.vertex) mesh_.end_vertices();
   }
+  const std::uint64_t left_over = stream_.left();
+  if (!is_padding()) mesh_.add_left_over("byte", left_over);
   return mesh_.finish();
+}
+
+// Whether what is left is blanks and zero bytes, of which no face can be made: their lists have
+// lengths.
+template <class T>
+bool Reader<T>::is_padding() {
+  constexpr std::string_view kPadding("\0 \t\r\n\x1a", 6);
+  const std::uint64_t left = stream_.left();
+  if (left > SourceStream::kBufferBytes) return false;
+  const char* const bytes = stream_.take(static_cast<std::size_t>(left));
+  return bytes == nullptr ||
+         std::string_view(bytes, static_cast<std::size_t>(left)).find_first_not_of(kPadding) ==
+             std::string_view::npos;
 }
 
 template <class T>

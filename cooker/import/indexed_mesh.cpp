@@ -155,6 +155,17 @@ RoundedCorner IndexedMesh<T>::rounded(std::uint32_t vertex) const {
   return {at, {rounding_of<T>(at[0]), rounding_of<T>(at[1]), rounding_of<T>(at[2])}};
 }
 
+// Not refused, as a binary STL file of another size is: there the size alone tells a binary file
+// from a text, and readers of OFF and PLY pass over what follows, so that files with comments or a
+// block of their writer's there are in use.
+template <class T>
+void IndexedMesh<T>::add_left_over(std::string_view what, std::uint64_t count, std::size_t line) {
+  if (count == 0) return;
+  out_.report.unread.push_back(
+      {fmt::format("{}s after the last element", what), count, line,
+       "the header counts elements: if these are some, correct its numbers"});
+}
+
 template <class T>
 Status IndexedMesh<T>::finish() {
   ImportReport& report = out_.report;

@@ -58,6 +58,10 @@ class IndexedMesh {
   /// The id of the next face: the number of faces of three corners or more before it.
   [[nodiscard]] std::uint32_t next_face_id() const { return next_face_id_; }
 
+  /// Reports `count` of `what` ("line") after the last element that the header counts; of a text,
+  /// the first is in `line`.
+  void add_left_over(std::string_view what, std::uint64_t count, std::size_t line = 0);
+
   /// Welds the vertices and drops unused ones; fails if no face was added.
   Status finish();
 

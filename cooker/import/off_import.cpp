@@ -90,6 +90,12 @@ Status Reader<T>::read() {
     }
     if (Status status = read_face(); !status.ok()) return status;
   }
+  std::uint64_t left_over = 0;
+  std::size_t first = 0;
+  for (; find_word(); word_ = line_words_.size()) {
+    if (left_over++ == 0) first = line_;
+  }
+  mesh_.add_left_over("line", left_over, first);
   return mesh_.finish();
 }
 

@@ -79,6 +79,12 @@ Status Reader<T>::read() {
     if (Status status = read_element(element); !status.ok()) return status;
     if (&element == layout_.vertex) mesh_.end_vertices();
   }
+  std::uint64_t left_over = 0;
+  std::size_t first = 0;
+  while (next_row()) {
+    if (left_over++ == 0) first = line_;
+  }
+  mesh_.add_left_over("line", left_over, first);
   return mesh_.finish();
 }
 

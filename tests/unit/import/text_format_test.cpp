@@ -241,6 +241,40 @@ TEST_F(TextFormatTest, CallsOfObjAreRefused) {
   EXPECT_TRUE(has(error.detail, "line 5: 'call' reads another file here, other.obj; write the"));
 }
 
+// Found by a newcomer: faces beyond the count of the header were lost in silence. Blank lines,
+// comments, blanks and zero bytes are none.
+TEST_F(TextFormatTest, WhatFollowsTheLastElementIsReported) {
+  const auto left_over = [this](const std::string& name, const std::string& text) {
+    const std::vector<Unread> unread = load(name, text).report.unread;
+    EXPECT_LE(unread.size(), 1u);
+    return unread.empty()
+               ? std::string()
+               : fmt::format("{} {} {}", unread[0].count, unread[0].what, unread[0].line);
+  };
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n";
+  EXPECT_EQ(left_over("a.off", off), "");
+  EXPECT_EQ(left_over("a.off", off + "\n# 3 0 2 1\n \t\r\n"), "");
+  EXPECT_EQ(left_over("a.off", off + "\n3 0 2 1\n# a\n3 0 2 1"),
+            "2 lines after the last element 8");
+  const std::string ply =
+      ply_of("element vertex 3\nproperty float x\nproperty float y\nproperty float z\n") +
+      kPlyBody + "3 0 1 2\n";
+  EXPECT_EQ(left_over("a.ply", ply), "");
+  EXPECT_EQ(left_over("a.ply", ply + "\n \n"), "");
+  EXPECT_EQ(left_over("a.ply", ply + "3 0 2 1\n"), "1 lines after the last element 14");
+  std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty char x\n"
+      "property char y\nproperty char z\nelement face 1\n"
+      "property list uchar uchar vertex_indices\nend_header\n";
+  binary += std::string("\0\0\0\1\0\0\0\1\0", 9) + std::string("\3\0\1\2", 4);
+  EXPECT_EQ(left_over("a.ply", binary), "");
+  EXPECT_EQ(left_over("a.ply", binary + std::string("\r\n \0\0", 5)), "");
+  EXPECT_EQ(left_over("a.ply", binary + std::string("\3\0\2\1", 4)),
+            "4 bytes after the last element 0");
+  EXPECT_EQ(left_over("a.ply", binary + std::string(1u << 20, '\0')),
+            "1048576 bytes after the last element 0");
+}
+
 TEST_F(TextFormatTest, FacesBeforeTheFirstMaterialHaveNone) {
   const auto path = write("a.obj", kVertices + "f 1 2 3\nusemtl red\nf 1 3 2\n");
   const Result<SourceScene> scene = import_scene(path);
