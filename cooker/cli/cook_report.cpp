@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -420,10 +421,11 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
     if (import.f32_loss != F32Loss::kReader) {
       remedy += ", and with --tolerance LENGTH or the tolerance of a profile in few bytes";
     }
-    warnings.push_back(
-        fmt::format("{}: f32 has few digits for a mesh so far from the origin and moved a vertex "
-                    "by up to {:.3g}; {}",
-                    source, import.moved_by_f32, remedy));
+    // So small a move is noticed in tiny meshes alone (unnoticed_move).
+    const bool is_tiny = import.moved_by_f32 <= std::numeric_limits<float>::denorm_min();
+    warnings.push_back(fmt::format(
+        "{}: f32 has few digits for a mesh so {} and moved a vertex by up to {:.3g}; {}", source,
+        is_tiny ? "small" : "far from the origin", import.moved_by_f32, remedy));
   }
   if (import.has_f32_alone && import.moved_by_f32 == 0) {
     warnings.push_back(

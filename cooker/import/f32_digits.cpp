@@ -38,7 +38,7 @@ bool may_have_moved(const Positions& positions) {
   const Eigen::AlignedBox3d bounds = bounds_of(positions);
   if (bounds.isEmpty()) return false;
   const Eigen::Vector3d farthest = bounds.min().cwiseAbs().cwiseMax(bounds.max().cwiseAbs());
-  return kRoundoffF32 * farthest.norm() > unnoticed_in(bounds);
+  return std::max(kRoundoffF32 * farthest.norm(), kUnderflowF32) > unnoticed_in(bounds);
 }
 
 // The result goes into files, so it is computed in a fixed order, which Eigen's norms do not have.

@@ -3,6 +3,7 @@
 // map, the fewer bits are left for its shape.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,11 @@
 #include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
+
+/// Rounding to f32 moves a coordinate by no more than this if the result is subnormal: half of the
+/// smallest number.
+inline constexpr double kUnderflowF32 = 0x1p-150;
+static_assert(2 * kUnderflowF32 == std::numeric_limits<float>::denorm_min());
 
 /// How far f32 may move a vertex before it is told: half a step of a grid of 16 bits over the
 /// largest extent, the least that a mesh of a scene gets by default (kLeastMeshBits).

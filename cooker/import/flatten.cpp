@@ -123,7 +123,8 @@ Vector3d Flattener<T>::place_in_double(unsigned vertex) const {
   return is_identity_ ? source : transform_ * source;
 }
 
-// A coordinate lost half a unit in its last place to f32, but no more than any number of the text.
+// A coordinate lost half a unit in its last place to f32, or half of the smallest number, but no
+// more than any number of the text.
 template <class T>
 double Flattener<T>::moved_by_reader(unsigned vertex) const {
   const Vector3d source = position_of(source_->mVertices[vertex]);
@@ -131,7 +132,8 @@ double Flattener<T>::moved_by_reader(unsigned vertex) const {
   for (const std::array<double, 4>& row : transform_.row) {
     double moved = 0;
     for (std::size_t from = 0; from < 3; ++from) {
-      const double lost = kRoundoffF32 * std::abs(source[static_cast<int>(from)]);
+      const double lost =
+          std::max(kRoundoffF32 * std::abs(source[static_cast<int>(from)]), kUnderflowF32);
       moved += std::abs(row[from]) * std::min(lost, loss_in_text_);
     }
     squares += moved * moved;

@@ -91,6 +91,28 @@ TEST_F(F32DigitsTest, ReadsTheDigitsOfTextStl) {
   EXPECT_EQ(load("even.stl", stl("487123.25")).report.moved_by_f32, 0);
 }
 
+// Found by a newcomer: that a mesh became a point, or that f32 has few digits for numbers so small,
+// was no move.
+TEST_F(F32DigitsTest, MeasuresWhatUnderflowMoves) {
+  const auto tiny = [](const char* length) {
+    return fmt::format("v 0 0 0\nv {0} 0 0\nv 0 {0} 0\n{1}", length, kTriangle);
+  };
+  const Imported point = load("point.obj", tiny("1e-50"));
+  EXPECT_DOUBLE_EQ(point.report.moved_by_f32, 1e-50);
+  EXPECT_EQ(point.mesh.moved_by_f32, point.report.moved_by_f32);
+  EXPECT_EQ(check_moved_by_f32(point.report, 1e-51).code(), Errc::kMeshUnsupported);
+  EXPECT_TRUE(check_moved_by_f32(point.report, 1e-49).ok());
+  // 21 of the smallest number, 2^-149, are 2.94e-44.
+  const Imported few = load("few.obj", tiny("3e-44"));
+  EXPECT_DOUBLE_EQ(few.report.moved_by_f32, 3e-44 - 21 * 0x1p-149);
+  // All digits that count are there from 2^-133 on: half of 2^-149 is 2^-17 of that.
+  EXPECT_EQ(load("all.obj", tiny("1.1e-40")).report.moved_by_f32, 0);
+  ImportOptions options;
+  options.precision = Precision::kF64;
+  EXPECT_EQ(load("whole.obj", tiny("1e-50"), options).report.moved_by_f32, 0);
+  EXPECT_EQ(load("zero.obj", tiny("0")).report.moved_by_f32, 0);
+}
+
 std::string collada(const char* x) {
   return fmt::format(
       R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" )"
