@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <assimp/Importer.hpp>
+#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <assimp/version.h>
@@ -57,6 +58,8 @@ void configure(Assimp::Importer& importer, FaceOrder order) {
   // Reordered: faces sorted by material.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_MATERIALS, order == FaceOrder::kByMaterial);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_SEPARATE_BFCULL, false);
+  // Turned: what a Collada file says is up.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   // Not geometry.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
@@ -76,6 +79,16 @@ constexpr std::array kTextFormats = {
     TextFormat{"nff", nullptr},       TextFormat{"raw", nullptr},
     TextFormat{"smd", check_smd_end},
 };
+
+// Its reader of Collada gives the root, which has no transform in the file, a scale: the metres of
+// a unit. Without it coordinates are those of the file.
+void undo_unit(aiScene& scene) {
+  aiString format;
+  const bool is_collada = scene.mMetaData != nullptr &&
+                          scene.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, format) &&
+                          std::string_view(format.C_Str()) == "Collada Importer";
+  if (is_collada && scene.mRootNode != nullptr) scene.mRootNode->mTransformation = aiMatrix4x4();
+}
 
 // Records the files read in `use`. Errors do not name the source. No post-processing flags: each
 // may drop, reorder, merge or generate data.
@@ -113,7 +126,9 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
     }
     return Error{Errc::kImportFailed, why.empty() ? "no scene" : why};
   }
-  return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
+  std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
+  undo_unit(*scene);
+  return scene;
 }
 
 // Runs of materials; the materials themselves are added to `scene`. If assimp cannot read the

@@ -119,13 +119,13 @@ TEST_F(ImportFormatTest, StlAsciiAndBinary) {
   expect_tetrahedron(load("b.stl", binary));
 }
 
-// Collada is turned by its up axis: a node transform like any other.
-TEST_F(ImportFormatTest, ColladaUpAxisIsApplied) {
-  const auto dae = [](const std::string& up) {
+// Found by a newcomer: coordinates of Collada were turned by the up axis and scaled by the unit.
+TEST_F(ImportFormatTest, ColladaHasTheCoordinatesOfTheFile) {
+  const auto dae = [](const std::string& asset) {
     return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
-           "version=\"1.4.1\"><asset><up_axis>" +
-           up +
-           "</up_axis></asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+           "version=\"1.4.1\"><asset>" +
+           asset +
+           "</asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
            "<float_array id=\"f\" count=\"9\">0 0 0 1 0 0 0 2 0</float_array><technique_common>"
            "<accessor source=\"#f\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/>"
            "<param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor>"
@@ -136,9 +136,13 @@ TEST_F(ImportFormatTest, ColladaUpAxisIsApplied) {
            "<instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes><scene>"
            "<instance_visual_scene url=\"#s\"/></scene></COLLADA>";
   };
-  const Imported y_up = load("y.dae", dae("Y_UP")), z_up = load("z.dae", dae("Z_UP"));
-  EXPECT_EQ(y_up.mesh.positions[2], Eigen::Vector3d(0, 2, 0));
-  EXPECT_EQ(z_up.mesh.positions[2], Eigen::Vector3d(0, 0, -2));
+  for (const char* asset : {"", "<up_axis>X_UP</up_axis>", "<up_axis>Y_UP</up_axis>",
+                            "<unit name=\"inch\" meter=\"0.0254\"/><up_axis>Z_UP</up_axis>"}) {
+    const Imported got = load("a.dae", dae(asset));
+    EXPECT_EQ(got.mesh.positions[1], Eigen::Vector3d(1, 0, 0)) << asset;
+    EXPECT_EQ(got.mesh.positions[2], Eigen::Vector3d(0, 2, 0)) << asset;
+    EXPECT_EQ(got.report.moved_by_f32, 0) << asset;
+  }
 }
 
 // Assimp's RAW reader loses the nodes of all groups but the last; their faces are taken over

@@ -236,7 +236,7 @@ TEST_F(ImportSceneTest, MissingNamesAreNoError) {
   EXPECT_EQ(got.meshes.size(), 1u);
 }
 
-TEST_F(ImportSceneTest, ColladaInstancesUnderAnUpAxis) {
+TEST_F(ImportSceneTest, ColladaInstancesAreWhereTheFileHasThem) {
   const std::string geometry =
       R"(<geometry id="g" name="quad"><mesh><source id="p"><float_array id="f" count="12">)"
       R"(0 0 0 2 0 0 2 1 0 0 1 0</float_array><technique_common><accessor source="#f" count="4" )"
@@ -252,16 +252,15 @@ TEST_F(ImportSceneTest, ColladaInstancesUnderAnUpAxis) {
   const SourceScene got = scene(
       "a.dae",
       R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" )"
-      R"(version="1.4.1"><asset><up_axis>Z_UP</up_axis></asset><library_geometries>)" +
+      R"(version="1.4.1"><asset><unit meter="0.01"/><up_axis>Z_UP</up_axis></asset><library_geometries>)" +
           geometry +
           R"(</library_geometries><library_visual_scenes><visual_scene id="s" name="s">)" + node +
           R"(</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/>)"
           R"(</scene></COLLADA>)");
   EXPECT_EQ(names_of(got), (std::vector<std::string>{"one", "two"}));
   ASSERT_EQ(got.instances.size(), 2u);
-  // (x, y, z) with z up is (x, z, -y) with y up.
-  EXPECT_EQ(rows_of(got.instances[0].pose), (Rows{1, 0, 0, 7, 0, 0, 1, 9, 0, -1, 0, -8}));
-  EXPECT_EQ(rows_of(got.instances[1].pose), (Rows{0, -3, 0, 0, 0, 0, 3, 0, -3, 0, 0, 0}));
+  EXPECT_EQ(rows_of(got.instances[0].pose), (Rows{1, 0, 0, 7, 0, 1, 0, 8, 0, 0, 1, 9}));
+  EXPECT_EQ(rows_of(got.instances[1].pose), (Rows{0, -3, 0, 0, 3, 0, 0, 0, 0, 0, 3, 0}));
   ASSERT_EQ(got.meshes.size(), 1u);
   EXPECT_EQ(got.meshes[0].mesh.positions.f32,
             (std::vector<float>{0, 0, 0, 2, 0, 0, 2, 1, 0, 0, 1, 0}));
