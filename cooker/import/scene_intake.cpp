@@ -143,8 +143,10 @@ Status SceneIntake::take(const Placements& placements) {
     if (*mesh == kNoMesh) continue;
     const Pose pose = pose_of(placement.transform);
     if (!pose.matrix().allFinite() || !has_double_inverse(pose)) {
-      return Error{Errc::kInvalidPose, fmt::format("{}: node '{}': its transform {}", context_.file,
-                                                   placement.name, pose_fault(pose))};
+      return Error{Errc::kImportFailed,
+                   fmt::format("{}: node '{}': its transform {}; --flatten makes one tree of a "
+                               "file, whatever its transforms",
+                               context_.file, placement.name, pose_fault(pose))};
     }
     const auto id = static_cast<std::uint32_t>(out_.instances.size());
     out_.instances.push_back({placement.name, *mesh, id, pose});

@@ -107,8 +107,8 @@ struct SourceScene {
 /// different meshes of equal content are counted each.
 ///
 /// A file without a node graph (OBJ, PLY, STL, OFF) is one instance of the mesh that import_mesh
-/// returns, named by the stem of the file's name. Errors: as for import_mesh; kInvalidPose with the
-/// node for a transform that is not finite or not invertible, that is, for which RelativePose
+/// returns, named by the stem of the file's name. Errors: as for import_mesh; kImportFailed with
+/// the node for a transform that is not finite or not invertible, that is, for which RelativePose
 /// fails.
 Result<SourceScene> import_scene(const std::filesystem::path& path,
                                  const ImportOptions& options = {});
@@ -117,7 +117,7 @@ using ImportedFile = std::variant<Imported, SourceScene>;
 
 /// Reads `path` once: as a SourceScene, as from import_scene, if its node graph places faces twice
 /// or more; otherwise as one mesh, bit for bit as from import_mesh. Errors: as for both; a pose may
-/// be refused (kInvalidPose) that import_mesh would flatten.
+/// be refused that import_mesh would flatten.
 Result<ImportedFile> import_file(const std::filesystem::path& path,
                                  const ImportOptions& options = {});
 
