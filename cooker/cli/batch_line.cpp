@@ -198,8 +198,12 @@ class KeyFields {
   }
   static bool convert(const Json& value, std::string& out) {
     if (value.is_string()) out = value.get<std::string>();
-    if (value.is_number_unsigned()) out = std::to_string(value.get<std::uint64_t>());
-    return value.is_string() || value.is_number_unsigned();
+    return value.is_string();
+  }
+  static bool convert(const Json& value, WhichTree& out) {
+    out.is_number = value.is_number_unsigned();
+    if (out.is_number) out.text = std::to_string(value.get<std::uint64_t>());
+    return out.is_number || convert(value, out.text);
   }
   static bool convert(const Json& value, std::vector<std::string>& out) {
     std::vector<std::string> texts;
@@ -229,7 +233,8 @@ class KeyFields {
   static const char* form_of(const Pose&) { return "X,Y,Z or 12 numbers, as an array or as text"; }
   static const char* form_of(double) { return "a number"; }
   static const char* form_of(const std::optional<double>&) { return "a number"; }
-  static const char* form_of(const std::string&) { return "a name as a text, or a number"; }
+  static const char* form_of(const std::string&) { return "a text"; }
+  static const char* form_of(const WhichTree&) { return "a name as a text, or a number"; }
   static const char* form_of(const std::vector<std::string>&) {
     return "INSTANCE=POSE as a text (\"Crate=1,2,3\"), or an array of such";
   }

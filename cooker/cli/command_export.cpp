@@ -96,7 +96,7 @@ Result<std::vector<std::uint32_t>> chosen_trees(const Arguments& arguments, cons
     for (std::uint32_t i = 0; i < file.tree_count(); ++i) numbers.push_back(i);
     return numbers;
   }
-  const Result<std::uint32_t> number = find_tree(file, arguments.tree);
+  const Result<std::uint32_t> number = find_tree(file, {arguments.tree});
   if (!number) return in_file(input_name(arguments.file), number.error());
   numbers.push_back(*number);
   return numbers;

@@ -9,7 +9,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <sys/stat.h>
 #include <system_error>
 #include <utility>
@@ -271,6 +273,13 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
     }
     if (!scene) return fail(in_queried_file(arguments, {}, scene.error()));
     StillSceneWarning still(arguments);
+    std::set<std::string> told;
+    const auto tell_hidden = [&](const std::vector<std::string>& moves) {
+      for (const std::string& what : hidden_by_names(scene->scene, moves)) {
+        if (told.insert(what).second) warn(fmt::format("{}: {}", input_name(arguments.file), what));
+      }
+    };
+    tell_hidden(arguments.moves);
     return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
       if (line.moves.empty()) {
         return still.told(answer(scene->file, scene->scene, line.request, others), scene->scene,
@@ -280,12 +289,13 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
       moves.insert(moves.end(), line.moves.begin(), line.moves.end());
       const Result<Scene> moved = move_scene(scene->file, moves);
       if (!moved) return moved.error();
+      tell_hidden(line.moves);
       return still.told(answer(scene->file, *moved, line.request, others), *moved, line.request);
     });
   }
   const Result<OpenedTree> tree =
       bind_tree(std::move(opened->file),
-                {arguments.file, arguments.tree, arguments.mesh, "--tree", "--mesh"});
+                {arguments.file, {arguments.tree}, arguments.mesh, "--tree", "--mesh"});
   if (!tree) return fail(tree.error());
   return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
     if (!line.moves.empty()) {
@@ -360,7 +370,7 @@ class OptionFields {
             "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row")
         ->type_name("POSE");
     command_
-        .add_option("--tree2", tree.tree,
+        .add_option("--tree2", tree.tree.text,
                     "Its tree, by name or number; needed if FILE2 holds a scene [tree 0]")
         ->type_name("TREE")
         ->group(kRareOptions);

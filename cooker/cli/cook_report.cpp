@@ -452,17 +452,36 @@ std::vector<std::string> lost_surfaces(const std::vector<CookedTree>& trees) {
   return warnings;
 }
 
-// Names that several inputs, or several meshes of a scene, gave their trees.
-std::vector<std::string> shared_names(const std::vector<CookedTree>& trees) {
-  std::map<std::string, std::size_t> counts;
-  for (const CookedTree& cooked : trees) ++counts[cooked.tree.name];
+// What names hide: names that several inputs, or several meshes of a scene, gave their trees, and
+// names that are the number of another tree.
+std::vector<std::string> hiding_names(const std::vector<CookedTree>& trees) {
+  struct Named {
+    std::size_t first;
+    std::size_t count = 0;
+  };
+  std::map<std::string, Named> named;
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    ++named.try_emplace(trees[i].tree.name, Named{i}).first->second.count;
+  }
   std::vector<std::string> warnings;
-  for (const auto& [name, count] : counts) {
-    if (count == 1 || name.empty()) continue;
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    const auto found = named.find(fmt::format("{}", i));
+    if (found == named.end() || found->second.first == i) continue;
+    warnings.push_back(fmt::format(
+        "tree {0}: --tree {0} takes the tree of that name, number {1}; {2} tree number {0}, and "
+        "\"tree\": {0} does in a line of a batch",
+        i, found->second.first,
+        named.at(trees[i].tree.name).first == i && !trees[i].tree.name.empty()
+            ? fmt::format("--tree {} takes", trees[i].tree.name)
+            : "no --tree takes"));
+  }
+  const char* const numbers = warnings.empty() ? "any" : "those whose number is no name of another";
+  for (const auto& [name, of_name] : named) {
+    if (of_name.count == 1 || name.empty()) continue;
     warnings.push_back(fmt::format(
         "tree {0}: {1} trees of the file have this name; --tree {0} and find_tree() take "
-        "the first, --tree NUMBER any",
-        name, count));
+        "the first, --tree NUMBER {2}",
+        name, of_name.count, numbers));
   }
   return warnings;
 }
@@ -476,7 +495,7 @@ std::vector<std::string> warnings_of(const Summary& summary) {
   };
   for (const ImportReport& import : summary.imports) add(warnings_of(import));
   if (summary.scene) add(summary.scene->notices);
-  add(shared_names(summary.trees));
+  add(hiding_names(summary.trees));
   add(lost_surfaces(summary.trees));
   return all;
 }

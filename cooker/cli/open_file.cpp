@@ -59,10 +59,11 @@ Result<OpenedFile> open_file(const std::filesystem::path& path) {
   return OpenedFile{std::move(*blob), std::filesystem::file_size(path, ignored)};
 }
 
-Result<std::uint32_t> find_tree(const File& file, const std::string& which) {
-  if (which.empty()) return std::uint32_t{0};
-  Result<std::uint32_t> named = file.find_tree(which);
-  if (named) return named;
+Result<std::uint32_t> find_tree(const File& file, const WhichTree& wanted) {
+  if (wanted.empty()) return std::uint32_t{0};
+  const std::string& which = wanted.text;
+  const Result<std::uint32_t> named = file.find_tree(which);
+  if (named && !wanted.is_number) return named;
   std::uint32_t index = 0;
   const char* const end = which.data() + which.size();
   const auto [parsed, error] = std::from_chars(which.data(), end, index);
@@ -72,14 +73,15 @@ Result<std::uint32_t> find_tree(const File& file, const std::string& which) {
     if (!file.tree_name(i).empty()) names.emplace_back(file.tree_name(i));
   }
   if (names.empty() && file.tree_count() > 0) {
-    return Error{named.code(), fmt::format("no tree is called \"{}\": trees have no names in this "
-                                           "file; expected a number from 0 to {}",
-                                           which, file.tree_count() - 1)};
+    return Error{Errc::kTreeIndex,
+                 fmt::format("no tree is called \"{}\": trees have no names in this "
+                             "file; expected a number from 0 to {}",
+                             which, file.tree_count() - 1)};
   }
   constexpr std::size_t kMostListed = 8;
   std::string meant = suggestion(which, names);
   if (meant.empty() && names.size() <= kMostListed) meant = "; expected " + listed(names);
-  return Error{named.code(), fmt::format("no tree is called \"{}\"{}", which, meant)};
+  return Error{Errc::kTreeIndex, fmt::format("no tree is called \"{}\"{}", which, meant)};
 }
 
 Error naming_mesh(const std::filesystem::path& mesh, const Error& error) {

@@ -2,6 +2,7 @@
 // Files as commands open them: mapped, or decompressed if they are blobs.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -30,9 +31,18 @@ Result<OpenedFile> open_file(const std::filesystem::path& path);
   return options;
 }
 
-/// The first tree for an empty text, else the tree with that name or, if none is called so, that
-/// number. A number need not be in the file: binding finds that out. Error: kTreeIndex.
-Result<std::uint32_t> find_tree(const File& file, const std::string& which);
+/// A tree of a file as users say it.
+struct WhichTree {
+  std::string text;        // name or number; empty: the first
+  bool is_number = false;  // text is a number and no name, as a number in JSON is
+
+  [[nodiscard]] bool empty() const { return text.empty(); }
+  auto operator<=>(const WhichTree&) const = default;
+};
+
+/// The tree with that name or, if none is called so, that number. A number need not be in the file:
+/// binding finds that out. Error: kTreeIndex.
+Result<std::uint32_t> find_tree(const File& file, const WhichTree& which);
 
 /// The same error; of a mesh that is not the tree's (kExternalMeshMismatch) it names the one that
 /// was given and the one that is needed.

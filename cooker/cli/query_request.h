@@ -18,6 +18,7 @@
 #include <boxtree/boxtree.h>
 
 #include "cooker/cli/json_output.h"
+#include "cooker/cli/open_file.h"
 #include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
@@ -251,7 +252,7 @@ struct PointRequest {
 
 struct SecondTree {
   std::filesystem::path file;
-  std::string tree;            // by name or number; empty: the first
+  WhichTree tree;
   std::filesystem::path mesh;  // its source, if its geometry is external
   Pose pose = Pose::Identity();
 };
@@ -365,8 +366,7 @@ struct OpenedTree {
 /// What users say of a tree to bind.
 struct TreeWanted {
   const std::filesystem::path& path;
-  const std::string&
-      which;  // name or number; if empty, tree 0, and a warning where there are others
+  WhichTree which;                    // if empty, tree 0, and a warning where there are others
   const std::filesystem::path& mesh;  // of a tree cooked with --external; compared by content
   const char* option;                 // that says which, for messages
   const char* mesh_option;            // that names the mesh, likewise
@@ -382,7 +382,7 @@ class TreeCache {
   Result<const Tree*> get(const SecondTree& second);
 
  private:
-  std::map<std::pair<std::string, std::string>, std::unique_ptr<OpenedTree>> opened_;
+  std::map<std::pair<std::string, WhichTree>, std::unique_ptr<OpenedTree>> opened_;
 };
 
 /// The points of a mesh, each once, for a ConvexHull; an error where these are too many.

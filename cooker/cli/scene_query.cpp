@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -240,6 +242,18 @@ Error no_instance(const File& file, const Scene& scene, const std::string& name)
   return {Errc::kInstanceIndex, std::move(detail)};
 }
 
+// The instance of "INSTANCE=POSE", by name or number.
+std::string name_in_move(const std::string& text) {
+  return text.substr(0, text.rfind('='));
+}
+
+std::optional<std::uint32_t> number_of_instance(const std::string& name) {
+  std::uint32_t number = 0;
+  const char* const end = name.data() + name.size();
+  const auto [parsed, error] = std::from_chars(name.data(), end, number);
+  return error == std::errc() && parsed == end ? std::optional(number) : std::nullopt;
+}
+
 Result<Move> parse_move(const File& file, const Scene& scene, const std::string& text) {
   const std::size_t at = text.rfind('=');
   const std::string_view numbers =
@@ -251,14 +265,12 @@ Result<Move> parse_move(const File& file, const Scene& scene, const std::string&
                              "\"{}\"{}",
                              text, why_no_list(numbers))};
   }
-  const std::string name = text.substr(0, at);
+  const std::string name = name_in_move(text);
   const Result<std::uint32_t> found = scene.find_instance(name);
   if (found) return Move{name, *found, *pose};
-  std::uint32_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error != std::errc() || end != name.data() + name.size())
-    return no_instance(file, scene, name);
-  if (number < scene.instance_count()) return Move{name, number, *pose};
+  const std::optional<std::uint32_t> number = number_of_instance(name);
+  if (!number) return no_instance(file, scene, name);
+  if (*number < scene.instance_count()) return Move{name, *number, *pose};
   return Error{Errc::kInstanceIndex, fmt::format("--move {}: expected a number from 0 to {}", name,
                                                  scene.instance_count() - 1)};
 }
@@ -269,6 +281,33 @@ Result<OpenedScene> open_scene(File file, std::span<const std::string> moves) {
   Result<Scene> scene = move_scene(file, moves);
   if (!scene) return scene.error();
   return OpenedScene{std::move(file), std::move(*scene)};
+}
+
+std::vector<std::string> hidden_by_names(const Scene& scene, std::span<const std::string> moves) {
+  std::vector<std::string> hidden;
+  for (const std::string& text : moves) {
+    const std::string name = name_in_move(text);
+    const Result<std::uint32_t> first = scene.find_instance(name);
+    if (!first) continue;
+    std::uint32_t count = 0;
+    for (std::uint32_t i = *first; i < scene.instance_count(); ++i) {
+      const Result<InstanceInfo> info = scene.info(i);
+      if (info && info->name == name) ++count;
+    }
+    if (count > 1) {
+      hidden.push_back(fmt::format(
+          "--move {}: {} instances have this name; the first moves, number {}. --move NUMBER=POSE "
+          "moves the instance of that number",
+          name, count, *first));
+    }
+    const std::optional<std::uint32_t> number = number_of_instance(name);
+    if (number && *number != *first && *number < scene.instance_count()) {
+      hidden.push_back(
+          fmt::format("--move {0}: the instance of that name moves, number {1}, and not number {0}",
+                      name, *first));
+    }
+  }
+  return hidden;
 }
 
 Result<Scene> move_scene(const File& file, std::span<const std::string> moves) {

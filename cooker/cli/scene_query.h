@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/query_request.h"
@@ -20,6 +21,11 @@ struct OpenedScene {
 /// Opens the scene of a file and moves instances: each of `moves` is "INSTANCE=POSE", the instance
 /// by its name or number. Errors: those of Scene::bind; kInvalidQuery for a move that says nothing.
 Result<OpenedScene> open_scene(File file, std::span<const std::string> moves);
+
+/// What to tell users of `moves` whose instance is not the only one that they may have meant: its
+/// name is that of several, or the number of another one.
+[[nodiscard]] std::vector<std::string> hidden_by_names(const Scene& scene,
+                                                       std::span<const std::string> moves);
 
 /// The same scene with its instances as they are in the file, but for `moves`.
 Result<Scene> move_scene(const File& file, std::span<const std::string> moves);

@@ -212,6 +212,31 @@ expect 0 "$boxtree" query level.bxt contacts --move Crate=0.8,2.1,-6.8 --json
 same "$(jq -c 'del(.schema)' out)" "$(cat moved)"
 expect 1 "$boxtree" query level.bxt --move Crate=0.8,2.1,-6.8 --batch batch
 same "$(jq -sc 'map(.hit)' out)" '[true,true,true,null,null]'
+# Found by a newcomer: of two instances of one name the first moved without a word.
+cat >doubles.gltf <<'END'
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+ "nodes": [{"name": "two", "mesh": 0}, {"name": "two", "mesh": 0, "translation": [5, 0, 0]},
+           {"name": "0", "mesh": 0, "translation": [9, 0, 0]}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "buffers": [{"byteLength": 36, "uri":
+   "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}
+END
+expect 0 "$boxtree" cook doubles.gltf -o doubles.bxt -q
+expect 0 "$boxtree" query doubles.bxt contacts --move two=0,0,7 --move 0=0,0,8
+same "$(cat err)" 'boxtree: warning: doubles.bxt: --move two: 2 instances have this name; the first moves, number 0. --move NUMBER=POSE moves the instance of that number
+boxtree: warning: doubles.bxt: --move 0: the instance of that name moves, number 2, and not number 0'
+printf '%s\n' '{"kind":"contacts","move":"two=0,0,7"}' '{"kind":"contacts","move":"two=0,0,8"}' >batch
+expect 0 "$boxtree" query doubles.bxt --batch batch
+same "$(grep -c 'have this name' err)" 1
+expect 0 "$boxtree" query doubles.bxt contacts --move 1=0,0,7
+same "$(cat err)" ''
+# Found by a newcomer: a node that flattens its mesh was a fault of the command line.
+sed 's/"translation": \[5, 0, 0\]/"scale": [1, 0, 1]/' doubles.gltf >flat.gltf
+expect 3 "$boxtree" cook flat.gltf -o no.bxt -q
+grep -q "^boxtree: import_failed: flat.gltf: node 'two': its transform is not invertible: .*; --flatten makes one tree of a file" err
+expect 0 "$boxtree" cook flat.gltf -o no.bxt -q --flatten
 
 # A file for viewers: every instance where it is, and what is cooked from it is the same place.
 expect 0 "$boxtree" export level.bxt -o shown.glb --json
