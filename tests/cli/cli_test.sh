@@ -1200,6 +1200,22 @@ jq -e '.files[0].approximate | [.point, .distance] | all(
     and .measured_error <= .relative_error + 1e-9)) and
   (.by_budget | length > 3 and all(.nodes <= .node_budget and .false_bounds == 0)))' out >/dev/null
 
+# Found by a newcomer: what is not read and may be geometry was lost in silence. It is a warning, and in the JSON.
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'cstype bezier' 'deg 1' 'f 1 2 3' 'deg 2' >unread.obj
+expect 0 "$boxtree" cook unread.obj -o unread.bxt -q --json
+same "$(cat err)" "boxtree: warning: unread.obj: not read, and may be geometry: cstype (line 4), deg (2, the first in line 5); faces are read from 'f' alone: convert curves and surfaces to polygons"
+same "boxtree: warning: $(jq -r '.warnings[]' out)" "$(cat err)"
+same "$(jq -c '.trees[0].import.unread' out)" '[{"what":"cstype","count":1,"line":4},{"what":"deg","count":2,"line":5}]'
+printf '%s\n' OFF '3 1 0' '0 0 0' '1 0 0' '0 1 0' '3 0 1 2' '3 2 1 0' >unread.off
+expect 0 "$boxtree" cook unread.off -o unread.bxt -q
+same "$(cat err)" 'boxtree: warning: unread.off: not read, and may be geometry: lines after the last element (line 7); the header counts elements: if these are some, correct its numbers'
+# So was that f32 makes a point of a mesh.
+printf '%s\n' 'v 0 0 0' 'v 1e-50 0 0' 'v 0 1e-50 0' 'f 1 2 3' >tiny.obj
+expect 0 "$boxtree" cook tiny.obj -o tiny.bxt -q --json
+same "$(cat err)" 'boxtree: warning: tiny.obj: f32 has few digits for a mesh so small and moved a vertex by up to 1e-50; cook --f64 keeps all digits, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
+same "$(jq '.trees[0].import.moved_by_f32' out)" 1e-50
+expect 5 "$boxtree" cook tiny.obj -o tiny.bxt -q --tolerance 1e-51
+
 # What f32 takes far from the origin is told, and kept on request: whole, or on a grid over the mesh.
 printf 'v %s\n' '459123.4321 5412345.6789 0' '459123.5321 5412345.6789 0' '459123.4321 5412345.7789 0' >far.obj
 printf 'f 1 2 3\n' >>far.obj
