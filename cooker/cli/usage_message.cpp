@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "cooker/cli/command_app.h"
 #include "cooker/cli/output.h"
 #include "cooker/import/import.h"
@@ -28,10 +30,11 @@ std::vector<std::string> command_names(const Command& command) {
   return names;
 }
 
-// A command takes the options of those around it, too.
+// A command takes the options of those around it, too, except those of the program.
 std::vector<std::string> option_names(const Command& command) {
   std::vector<std::string> names;
   for (const Command* at = &command; at != nullptr; at = at->parent()) {
+    if (at != &command && at->parent() == nullptr) break;
     for (const CLI::Option* option : at->app().get_options()) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
@@ -107,6 +110,12 @@ std::string unknown_option(const Command& command, const std::string& word) {
     if (has_option(*inner, word)) owners.push_back(inner->name());
   }
   if (!owners.empty()) return start + "an option of " + listed(owners) + ", which comes before it";
+  const Command* program = &command;
+  while (program->parent() != nullptr) program = program->parent();
+  if (has_option(*program, word)) {
+    return fmt::format("{}an option of {} alone; use '{} {}'", start, program->name(),
+                       program->name(), word);
+  }
   const std::string meant = suggestion(word, option_names(command));
   if (!meant.empty() || command.parent() == nullptr) return start + "no option" + meant;
   for (const Command* other : command.parent()->commands()) {

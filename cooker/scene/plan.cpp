@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,15 @@
 namespace boxtree::cooker {
 namespace {
 
+// Whether a glob matches an instance or its mesh by name.
+bool matches(const std::vector<Stated<std::string>>& globs, const SourceScene& scene,
+             const SceneInstance& instance) {
+  const std::string& mesh = scene.meshes[instance.mesh].mesh.name;
+  return std::any_of(globs.begin(), globs.end(), [&](const Stated<std::string>& glob) {
+    return glob_matches(glob.value, instance.name) || glob_matches(glob.value, mesh);
+  });
+}
+
 std::vector<std::uint32_t> objects_of(const SourceScene& scene, const Profile& profile) {
   const auto other = static_cast<std::uint32_t>(profile.objects.size() - 1);
   std::vector<std::uint32_t> objects;
@@ -23,16 +33,8 @@ std::vector<std::uint32_t> objects_of(const SourceScene& scene, const Profile& p
       objects.push_back(profile.instances[instance.id].object->value);
       continue;
     }
-    const std::string& mesh = scene.meshes[instance.mesh].mesh.name;
     std::uint32_t object = 0;
-    for (; object < other; ++object) {
-      const auto& globs = profile.objects[object].match;
-      if (std::any_of(globs.begin(), globs.end(), [&](const Stated<std::string>& glob) {
-            return glob_matches(glob.value, instance.name) || glob_matches(glob.value, mesh);
-          })) {
-        break;
-      }
-    }
+    while (object < other && !matches(profile.objects[object].match, scene, instance)) ++object;
     objects.push_back(object);
   }
   return objects;
@@ -60,6 +62,24 @@ std::vector<std::string> names_of(const SourceScene& scene) {
   return names;
 }
 
+// Why an object that matches names has no instance: others come first, or its names are misspelt.
+std::string why_none(const SourceScene& scene, const Profile& profile,
+                     std::span<const std::uint32_t> objects, std::uint32_t object) {
+  const auto& globs = profile.objects[object].match;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const SceneInstance& instance = scene.instances[i];
+    if (!matches(globs, scene, instance)) continue;
+    const std::string& mesh = scene.meshes[instance.mesh].mesh.name;
+    const bool is_stated =
+        instance.id < profile.instances.size() && profile.instances[instance.id].object;
+    return fmt::format(": it matches \"{}\", which is of \"{}\", {}",
+                       instance.name.empty() ? mesh : instance.name,
+                       profile.objects[objects[i]].name.value,
+                       is_stated ? "as the instance states" : "an object that comes first");
+  }
+  return suggestion(globs.front().value, names_of(scene));
+}
+
 void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan& plan) {
   const std::vector<std::uint32_t> objects = objects_of(scene, profile);
   std::vector<std::size_t> count(profile.objects.size(), 0);
@@ -80,7 +100,7 @@ void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan&
     } else if (!object.match.empty()) {
       plan.notices.push_back(fmt::format("{}: no instance is of object \"{}\"{}",
                                          profile.cite(object.match.front().line), object.name.value,
-                                         suggestion(object.match.front().value, names_of(scene))));
+                                         why_none(scene, profile, objects, o)));
     }
     if (count[o] == 0 && is_spawned(profile, o) && !object.never_collides_with.empty()) {
       plan.notices.push_back(

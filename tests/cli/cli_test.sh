@@ -562,6 +562,11 @@ misspelt "boxtree: usage: query ray: '--orgin' is no option; did you mean '--ori
 See 'boxtree query ray --help'." query cube.bxt ray --orgin 1,2,3
 misspelt "boxtree: usage: cook: '--outptu' is no option; did you mean '--output'?
 See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
+# Found by a newcomer: it was told to mean itself.
+misspelt "boxtree: usage: cook: '--version' is an option of boxtree alone; use 'boxtree --version'
+See 'boxtree cook --help'." cook --version
+misspelt "boxtree: usage: query ray: '--version' is an option of boxtree alone; use 'boxtree --version'
+See 'boxtree query ray --help'." query cube.bxt ray --version
 misspelt "boxtree: usage: report: '--grid-bits' is no option of report, but of cook or key
 See 'boxtree report --help'." report cube.obj --grid-bits 16
 misspelt "boxtree: usage: cook: '--frobnicate' is no option

@@ -107,6 +107,22 @@ match = ["gate *"]
             "'Gate A'?");
 }
 
+// Found by a newcomer: it was told to mean the name that it matches.
+TEST_F(PlanTest, AnObjectWhoseInstancesAreOfAnEarlierOneIsToldThat) {
+  const ScenePlan planned = plan(scene_of({mesh_of("crate")}, {placed("own 1", 0)}), R"(
+[[object]]
+name = "props"
+match = ["own*"]
+[[object]]
+name = "decor"
+match = ["other", "own*"]
+)");
+  ASSERT_EQ(planned.notices.size(), 1u);
+  EXPECT_EQ(planned.notices[0],
+            "scene.toml:7: match = [\"other\", \"own*\"]: no instance is of object \"decor\": it "
+            "matches \"own 1\", which is of \"props\", an object that comes first");
+}
+
 TEST_F(PlanTest, AListedInstanceMayNameItsObject) {
   const ScenePlan planned =
       plan(scene_of({mesh_of("crate")}, {placed("a", 0), placed("b", 0), placed("c", 0)}),
