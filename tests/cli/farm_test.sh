@@ -87,11 +87,11 @@ same_as_single
 for i in $(seq 1 8); do
   rm -rf cooked jobs.jsonl.done
   mkdir cooked
-  "$boxtree" cook --manifest jobs.jsonl --quiet --jobs 2 &
+  "$boxtree" cook --manifest jobs.jsonl --quiet --jobs 2 --cache "killed$((i % 3))" &
   sleep "0.0$((i * 2 % 10))$i"
   kill -9 $! 2>/dev/null || true
   wait $! 2>/dev/null || true
-  cook_all
+  cook_all --cache "killed$((i % 3))"
   same_as_single
   same "$(find cooked -type f | wc -l)" $jobs
 done
