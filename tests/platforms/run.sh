@@ -9,7 +9,8 @@
 #   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake;
 #                scalar: without vectors; sse4, avx512: walks by other vectors; O0, clang, libcxx: other compilers and libraries;
 #                windows: x86-64 under Wine; arm64, armhf, riscv64, i386: under qemu or as they are;
-#                wasm: under Node; farm: no queries, but cooks by Bazel (tests/farm)
+#                wasm: under Node; farm: no queries, but cooks by Bazel and by
+#                Slurm (tests/farm)
 # Environment: BOXTREE_BUILD, where boxtree is built, whose command line cooks [build]
 # shellcheck disable=SC2317 # platforms are called by name
 set -euo pipefail
@@ -193,13 +194,16 @@ platform_armhf() { emulated armhf armv7l arm-linux-gnueabihf "g++-arm-linux-gnue
 platform_riscv64() { emulated riscv64 riscv64 riscv64-linux-gnu "g++-riscv64-linux-gnu qemu-user-static" qemu-riscv64-static; }
 platform_i386() { emulated i386 i686 i686-linux-gnu g++-i686-linux-gnu ""; }
 platform_farm() {
-  install_missing bazel-bootstrap nginx-light libnginx-mod-http-dav-ext
-  if "$source/tests/farm/bazel_test.sh" "$build/boxtree" >"$work/farm.log" 2>&1; then
-    echo "PASS farm $(tail -n 1 "$work/farm.log")"
-  else
-    tail -n 5 "$work/farm.log"
-    fail farm "see $work/farm.log"
-  fi
+  install_missing bazel-bootstrap nginx-light libnginx-mod-http-dav-ext slurm-wlm munge
+  local engine
+  for engine in bazel slurm; do
+    if "$source/tests/farm/${engine}_test.sh" "$build/boxtree" >"$work/$engine.log" 2>&1; then
+      echo "PASS farm $(tail -n 1 "$work/$engine.log")"
+    else
+      tail -n 5 "$work/$engine.log"
+      fail farm "$engine, see $work/$engine.log"
+    fi
+  done
 }
 # The two files of the amalgamation, in $work/NAME.
 amalgamated() { python3 "$source/runtime/c/amalgamate.py" "$source" "$work/$1"; }
