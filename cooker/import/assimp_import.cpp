@@ -31,6 +31,7 @@
 #include "cooker/import/gltf_primitives.h"
 #include "cooker/import/gltf_user_data.h"
 #include "cooker/import/node_graph.h"
+#include "cooker/import/recording_io.h"
 #include "cooker/import/scene_intake.h"
 #include "cooker/import/source_files.h"
 #include "cooker/import/text_ends.h"

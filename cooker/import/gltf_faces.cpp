@@ -43,10 +43,6 @@ StatedFaces::value_type counts_of(const Json& primitive, const Json& accessors) 
 
 }  // namespace
 
-bool is_gltf(const std::filesystem::path& path) {
-  return has_extension(path, "gltf") || has_extension(path, "glb");
-}
-
 Result<Json> read_gltf(const SourceFile& source) {
   if (!is_gltf(source.path())) return Json();
   const Result<std::string> file = source.read();

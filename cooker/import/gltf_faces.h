@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,9 +17,6 @@
 struct aiScene;
 
 namespace boxtree::cooker {
-
-/// Whether a file of that name is a glTF file.
-[[nodiscard]] bool is_gltf(const std::filesystem::path& path);
 
 /// The document of a .gltf or .glb file; null for others. Errors: as parse_gltf.
 Result<nlohmann::json> read_gltf(const SourceFile& source);

@@ -15,7 +15,6 @@
 #include "cooker/import/face_materials.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/foreign_file.h"
-#include "cooker/import/gltf_faces.h"
 #include "cooker/import/obj_import.h"
 #include "cooker/import/off_import.h"
 #include "cooker/import/ply_import.h"

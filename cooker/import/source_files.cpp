@@ -1,25 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Checks, records and hashes source files.
+// Checks and hashes source files.
 #define XXH_INLINE_ALL
 #include "cooker/import/source_files.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <locale.h>
-#include <string_view>
+#include <memory>
 #include <system_error>
-#include <type_traits>
 
-#include <assimp/MemoryIOWrapper.h>
 #include <xxhash.h>
 
-#include "cooker/import/text_tokens.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/system/file_handle.h"
 #include "cooker/system/input_failure.h"
-#include "cooker/text/percent.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -68,82 +61,6 @@ Result<std::uint64_t> hash_source_files(std::span<const fs::path> files) {
 
 std::uint64_t hash_source_bytes(Bytes bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());
-}
-
-bool RecordingIo::Exists(const char* path) const {
-  if (source_.bytes()) return is_source(path);
-  std::error_code error;
-  const fs::path file = found(path);
-  return fs::is_regular_file(file, error) && DefaultIOSystem::Exists(file.c_str());
-}
-
-fs::path RecordingIo::found(const char* path) const {
-  std::error_code error;
-  const std::string_view name = path;
-  if (name.find('%') == std::string_view::npos || fs::is_regular_file(path, error)) return path;
-  const std::string folder = source_.path().parent_path().string();
-  const std::size_t kept = name.substr(0, folder.size()) == folder ? folder.size() : 0;
-  fs::path file = std::string(name.substr(0, kept)) + percent_decoded(name.substr(kept));
-  return fs::is_regular_file(file, error) ? file : fs::path(path);
-}
-
-void RecordingIo::note_failure(const fs::path& file) {
-  if (use_.failure) return;
-  const Status status = check_source_file(SourceFile(tidied(file)), source_.path().string());
-  if (!status.ok()) use_.failure = status.error();
-}
-
-Assimp::IOStream* RecordingIo::open_with_line_end() const {
-  Result<std::string> text = source_.read();
-  if (!text.ok()) return nullptr;
-  if (has_open_end(*text)) text->push_back('\n');
-  auto bytes = std::make_unique<std::uint8_t[]>(text->size());
-  std::memcpy(bytes.get(), text->data(), text->size());
-  constexpr bool kOwn = true;  // the stream deletes the bytes
-  return new Assimp::MemoryIOStream(bytes.release(), text->size(), kOwn);
-}
-
-Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
-  if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
-  if (source_.bytes()) {
-    if (is_source(path)) {
-      if (last_line_ == LastLine::kEnded) return open_with_line_end();
-      const auto* const data = reinterpret_cast<const std::uint8_t*>(source_.bytes()->data());
-      return new Assimp::MemoryIOStream(data, source_.bytes()->size());
-    }
-    if (use_.inaccessible.empty()) use_.inaccessible = tidied(path);
-    return nullptr;
-  }
-  // fopen opens directories too; a pipe would block.
-  std::error_code error;
-  const fs::path file = found(path);
-  const bool is_regular = fs::is_regular_file(file, error);
-  Assimp::IOStream* stream = nullptr;
-  if (is_regular) {
-    const bool adds_line_end = last_line_ == LastLine::kEnded && is_source(path);
-    stream = adds_line_end ? open_with_line_end() : DefaultIOSystem::Open(file.c_str(), mode);
-  }
-  if (stream == nullptr) {
-    note_failure(file);
-    return nullptr;
-  }
-  fs::path normal = tidied(file);
-  if (std::find(use_.files.begin(), use_.files.end(), normal) == use_.files.end()) {
-    use_.files.push_back(std::move(normal));
-  }
-  return stream;
-}
-
-static_assert(std::is_pointer_v<locale_t>);
-
-CLocaleScope::CLocaleScope() : locale_(newlocale(LC_ALL_MASK, "C", locale_t{})), previous_() {
-  if (locale_ != nullptr) previous_ = uselocale(static_cast<locale_t>(locale_));
-}
-
-CLocaleScope::~CLocaleScope() {
-  if (locale_ == nullptr) return;
-  uselocale(static_cast<locale_t>(previous_));
-  freelocale(static_cast<locale_t>(locale_));
 }
 
 }  // namespace boxtree::cooker

@@ -73,6 +73,11 @@ inline constexpr VertexWords kOrigin = {"0", "0", "0", "1"};
 /// Whether `path` ends in a dot and `extension` (lower case); ignores case.
 [[nodiscard]] bool has_extension(const std::filesystem::path& path, std::string_view extension);
 
+/// Whether a file of that name is a glTF file.
+[[nodiscard]] inline bool is_gltf(const std::filesystem::path& path) {
+  return has_extension(path, "gltf") || has_extension(path, "glb");
+}
+
 /// The entry of `table` whose `extension` `path` ends in, or nullptr.
 template <class Entry, std::size_t kEntries>
 [[nodiscard]] const Entry* find_extension(const std::array<Entry, kEntries>& table,

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "cooker/import/import.h"
-#include "cooker/import/source_files.h"
+#include "cooker/import/recording_io.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {
