@@ -41,11 +41,6 @@ function(boxtree_set_target target)
                                              -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${BOXTREE_SANITIZE})
   endif()
-  # ThreadSanitizer does not see how an oneTBB built without it orders tasks, and calls every pair
-  # of tasks a race. Its build runs them on threads instead: the same calls, found before oneTBB's.
-  if(BOXTREE_SANITIZE MATCHES thread)
-    target_include_directories(${target} BEFORE PRIVATE ${BOXTREE_SOURCE_DIR}/tests/tsan)
-  endif()
 endfunction()
 
 # Where users of a target find the public headers.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// oneTBB's blocked_range for ThreadSanitizer.
+// oneTBB's blocked_range for builds without oneTBB (BOXTREE_TBB=OFF).
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// oneTBB's task_arena for ThreadSanitizer: a number of threads to share out among tasks.
+// oneTBB's task_arena for builds without oneTBB: a number of threads to share out among tasks.
 #pragma once
 
 namespace tbb {
@@ -26,7 +26,8 @@ class task_arena {
   }
 
  private:
-  // More than one on every machine: races are looked for on machines with one processor too.
+  // Outside an arena. More than one on every machine: races are looked for on machines with one
+  // processor, too.
   static constexpr int kDefaultJobs = 4;
 
   int jobs_;

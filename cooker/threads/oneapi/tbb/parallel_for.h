@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// oneTBB's parallel_for for ThreadSanitizer.
+// oneTBB's parallel_for for builds without oneTBB.
 #pragma once
 
 #include <oneapi/tbb/parallel_invoke.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// oneTBB's parallel_invoke for ThreadSanitizer: a thread is started and joined, which it sees.
+// oneTBB's parallel_invoke for builds without oneTBB: a thread is started and joined, which
+// ThreadSanitizer sees.
 #pragma once
 
 #include <thread>
