@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "cooker/import/hash_mix.h"
+#include "cooker/system/prefetch.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -82,7 +83,7 @@ std::vector<std::uint32_t> first_of_group(const MeshView& mesh) {
     const std::size_t count = std::min(hash.size(), faces - begin);
     for (std::size_t i = 0; i < count; ++i) {
       hash[i] = bits.hash(begin + i);
-      __builtin_prefetch(&slots[slot_of(hash[i])]);
+      prefetch(&slots[slot_of(hash[i])]);
     }
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t face = begin + i;

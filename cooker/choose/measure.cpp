@@ -2,11 +2,9 @@
 // Medians over whole workloads: single queries are shorter than the resolution of a clock.
 #include "cooker/choose/measure.h"
 
-#include <ctime>
-#include <sys/resource.h>
-
 #include <boxtree/boxtree.h>
 
+#include "cooker/system/process.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
@@ -63,12 +61,6 @@ double clock_cost_ns() {
     least = std::min(least, taken.count());
   }
   return least;
-}
-
-double thread_seconds() noexcept {
-  timespec time{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload, std::size_t runs) {
@@ -152,11 +144,9 @@ Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_
   std::vector<double> open_us;
   std::vector<double> answer_us;
   for (std::size_t i = 0; i <= runs; ++i) {
-    rusage before{};
-    rusage after{};
-    ::getrusage(RUSAGE_SELF, &before);
+    const std::uint64_t faults_before = page_faults();
     const double start = thread_seconds();
-    const Result<File> file = File::open(path);
+    const Result<File> file = File::open(path.string());
     if (!file) return file.error();
     const Result<Tree> bound = Tree::bind(*file, tree);
     if (!bound) return bound.error();
@@ -164,11 +154,10 @@ Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_
     const Status queried = first_query(*bound);
     const double answered = thread_seconds();
     if (!queried) return queried.error();
-    ::getrusage(RUSAGE_SELF, &after);
+    figures.page_faults = page_faults() - faults_before;
     if (i == 0) continue;
     open_us.push_back(1e6 * (opened - start));
     answer_us.push_back(1e6 * (answered - start));
-    figures.page_faults = static_cast<std::uint64_t>(after.ru_minflt - before.ru_minflt);
   }
   figures.open_us = median(open_us);
   figures.first_answer_us = median(answer_us);

@@ -14,6 +14,7 @@
 #include <boxtree/error.h>
 
 #include "cooker/choose/workload.h"
+#include "cooker/system/process.h"
 
 namespace boxtree::cooker {
 
@@ -24,11 +25,8 @@ namespace boxtree::cooker {
   return *middle;
 }
 
-/// Processor time of this thread in seconds, including the kernel, excluding other work on the
-/// machine.
-[[nodiscard]] double thread_seconds() noexcept;
-
-/// Processor time of one call in seconds.
+/// Processor time of one call in seconds, including the kernel, excluding other work on the machine
+/// (thread_seconds).
 template <class Body>
 [[nodiscard]] double seconds_taken(Body body) {
   const double start = thread_seconds();

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <sys/resource.h>
 
 #include <fmt/format.h>
 
@@ -26,6 +25,7 @@
 #include "cooker/farm/cook_cache.h"
 #include "cooker/farm/keyed_cook.h"
 #include "cooker/shell/cook_job.h"
+#include "cooker/system/process.h"
 #include "cooker/write/outputs.h"
 
 namespace boxtree::cooker {
@@ -48,10 +48,8 @@ Json report_json(const Arguments& arguments, const Summary& summary, double seco
   if (!arguments.cook.job.reordered.empty())
     json["reordered"] = arguments.cook.job.reordered.string();
   json.update(summary_json(summary));
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
   json["seconds"] = seconds;
-  json["peak_bytes"] = usage.ru_maxrss * 1024;  // Linux counts kilobytes
+  json["peak_bytes"] = peak_bytes();
   return json;
 }
 

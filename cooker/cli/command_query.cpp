@@ -30,6 +30,7 @@
 #include "cooker/cli/scene_query.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/import/file_error.h"
+#include "cooker/system/file_handle.h"
 #include "cooker/system/input_failure.h"
 #include "cooker/text/nearest_name.h"
 
@@ -63,7 +64,7 @@ class BatchLines {
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 
   explicit BatchLines(const std::filesystem::path& path)
-      : path_(path), file_(is_standard_stream(path) ? stdin : std::fopen(path.c_str(), "rb")) {
+      : path_(path), file_(is_standard_stream(path) ? stdin : open_to_read(path).release()) {
     if (file_ == nullptr) error_ = errno;
   }
   BatchLines(const BatchLines&) = delete;

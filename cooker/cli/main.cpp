@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The command line `boxtree`: one sub-command a file.
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
 #include <optional>
 #include <string>
-#include <sys/mman.h>
-#include <sys/resource.h>
 
 #include <fmt/format.h>
 
@@ -16,6 +13,7 @@
 #include "cooker/cli/commands.h"
 #include "cooker/cli/exit_status.h"
 #include "cooker/cli/output.h"
+#include "cooker/cli/program_start.h"
 #include "cooker/import/assimp_import.h"
 #include "cooker/version.h"
 #include "runtime/blob/compressor.h"
@@ -28,28 +26,6 @@ namespace {
   static_cast<void>(
       std::fputs("boxtree: internal: cannot go on, most likely out of memory\n", stderr));
   std::_Exit(boxtree::cooker::kExitInternal);
-}
-
-// distance() takes most: 512 KB (docs/api/threads.md), and those that call it less than half of
-// that.
-constexpr std::size_t kStackBytes = 768 * 1024;
-constexpr std::size_t kPageBytes = 4096;
-
-[[gnu::noinline]] void touch_stack() {
-  [[maybe_unused]] volatile char bytes[kStackBytes];
-  for (std::size_t at = kStackBytes; at > 0; at -= kPageBytes) bytes[at - 1] = 0;
-}
-
-// A stack that cannot grow when a function needs it ends the program by SIGSEGV. So it grows now,
-// where too little memory can still be told.
-void grow_stack() {
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur < 2 * kStackBytes) return;
-  void* const room =
-      ::mmap(nullptr, kStackBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room == MAP_FAILED) throw std::bad_alloc();
-  static_cast<void>(::munmap(room, kStackBytes));
-  touch_stack();
 }
 
 // All versions that bytes of a file may depend on, for keys of caches.
@@ -65,12 +41,8 @@ int main(int argc, char** argv) {
   using namespace boxtree;
   int status = 0;
   std::set_terminate(end_at_once);
-#ifdef SIGXFSZ
-  // A limit of file sizes is an error of the write, which is reported and leaves no half a file.
-  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
-#endif
   try {
-    grow_stack();
+    cooker::prepare_process(argc, argv);
     cooker::Command app("boxtree",
                         "Cooks meshes into small collision trees and queries them.\n"
                         "A file called - is standard input or standard output; one of that name is "

@@ -43,7 +43,7 @@ Result<OpenedFile> open_standard_input() {
 }  // namespace
 
 Result<File> map_file(const std::filesystem::path& path) {
-  Result<File> mapped = File::open(path);
+  Result<File> mapped = File::open(path.string());
   if (mapped.code() == Errc::kFileNotFound) return input_failure(path.string(), ENOENT);
   return mapped;
 }
@@ -53,7 +53,7 @@ Result<OpenedFile> open_file(const std::filesystem::path& path) {
   Result<File> mapped = map_file(path);
   if (mapped) return OpenedFile{std::move(*mapped)};
   if (mapped.code() != Errc::kFeatureUnsupported) return with_remedy(mapped.error());
-  Result<File> blob = open_blob(path);
+  Result<File> blob = open_blob(path.string());
   if (!blob) return with_remedy(blob.error());
   std::error_code ignored;
   return OpenedFile{std::move(*blob), std::filesystem::file_size(path, ignored)};

@@ -4,23 +4,32 @@
 
 #include <array>
 #include <cerrno>
+#include <system_error>
+#ifndef _WIN32
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
-#include <system_error>
 #include <unistd.h>
+#endif
 
 #include <nlohmann/json.hpp>
 
 #include "cooker/system/input_failure.h"
+#include "cooker/system/posix.h"
 
 namespace boxtree::cooker {
 namespace {
 
+#ifdef _WIN32
+Result<std::string> output_of(const std::vector<std::string>& command, bool /*quiet*/) {
+  return Error{Errc::kFeatureUnsupported,
+               command[0] + ": peers are not measured on Windows; measure them on Linux"};
+}
+#else
 // What a program prints on standard output.
 Result<std::string> output_of(const std::vector<std::string>& command, bool quiet) {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+  if (!open_pipe(ends)) {
     return Error{Errc::kInternal, "pipe: " + std::generic_category().message(errno)};
   }
   posix_spawn_file_actions_t actions;
@@ -35,7 +44,7 @@ Result<std::string> output_of(const std::vector<std::string>& command, bool quie
   arguments.push_back(nullptr);
   pid_t child = 0;
   const int failed =
-      ::posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+      ::posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environment());
   posix_spawn_file_actions_destroy(&actions);
   ::close(ends[1]);
   if (failed != 0) {
@@ -58,6 +67,7 @@ Result<std::string> output_of(const std::vector<std::string>& command, bool quie
   }
   return text;
 }
+#endif
 
 }  // namespace
 

@@ -4,11 +4,13 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
+#include <span>
 #include <system_error>
-#include <unistd.h>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "cooker/system/descriptor.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -18,12 +20,12 @@ Error unreadable(const std::string& why) {
 }
 
 Result<std::vector<std::byte>> read_standard_input() {
-  if (::isatty(STDIN_FILENO) == 1) return unreadable("expected a file, found a terminal");
+  if (is_terminal(kStandardInput)) return unreadable("expected a file, found a terminal");
   std::vector<std::byte> bytes;
   std::size_t size = 0;
   while (true) {
     if (size == bytes.size()) bytes.resize(size + size / 2 + (std::size_t{1} << 16));
-    const ssize_t read = ::read(STDIN_FILENO, bytes.data() + size, bytes.size() - size);
+    const std::ptrdiff_t read = read_some(kStandardInput, std::span(bytes).subspan(size));
     if (read < 0 && errno == EINTR) continue;
     if (read < 0) return unreadable(std::generic_category().message(errno));
     if (read == 0) break;
@@ -58,11 +60,11 @@ Result<SourceBytes> standard_mesh(const std::string& format) {
 Result<OutputTarget> output_target(const std::filesystem::path& requested,
                                    const std::string& format) {
   if (!is_standard_stream(requested)) return OutputTarget(requested);
-  if (::isatty(STDOUT_FILENO) == 1) {
+  if (is_terminal(kStandardOutput)) {
     return Error{Errc::kInvalidQuery,
                  "--output: expected a file or a pipe, and standard output is a terminal"};
   }
-  return OutputTarget("stdout." + format, OutputStream{STDOUT_FILENO, "standard output"});
+  return OutputTarget("stdout." + format, OutputStream{kStandardOutput, "standard output"});
 }
 
 // Nothing of standard error is checked: what was cooked is whole. main checks standard output.

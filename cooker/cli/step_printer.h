@@ -6,12 +6,12 @@
 #include <chrono>
 #include <cstdio>
 #include <string>
-#include <unistd.h>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "cooker/cli/output.h"
+#include "cooker/system/descriptor.h"
 
 namespace boxtree::cooker {
 
@@ -22,7 +22,7 @@ class StepPrinter {
   enum class Elsewhere { kNothing, kLines };
 
   explicit StepPrinter(bool enabled, Elsewhere elsewhere = Elsewhere::kNothing)
-      : is_terminal_(::isatty(STDERR_FILENO) == 1),
+      : is_terminal_(is_terminal(kStandardError)),
         enabled_(enabled && (is_terminal_ || elsewhere == Elsewhere::kLines)) {}
   StepPrinter(const StepPrinter&) = delete;
   StepPrinter& operator=(const StepPrinter&) = delete;

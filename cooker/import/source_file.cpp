@@ -2,8 +2,6 @@
 // Bytes are read by stdio, too, so that readers need not know the difference.
 #include "cooker/import/source_file.h"
 
-#include <cstddef>
-#include <cstdio>
 #include <system_error>
 
 #include "cooker/import/whole_file.h"
@@ -24,9 +22,7 @@ std::string SourceFile::short_title() const {
 }
 
 FileHandle SourceFile::open() const {
-  if (!bytes_) return FileHandle(std::fopen(path_.c_str(), "rb"));
-  // fmemopen takes void*, but a stream for reading does not write.
-  return FileHandle(::fmemopen(const_cast<std::byte*>(bytes_->data()), bytes_->size(), "rb"));
+  return bytes_ ? open_to_read(*bytes_) : open_to_read(path_);
 }
 
 Result<std::uint64_t> SourceFile::size() const {

@@ -35,7 +35,7 @@ Status check_source_file(const SourceFile& source, const std::string& named_in) 
   if (fs::is_directory(status)) return unreadable(path, "is a directory, not a mesh file");
   // A pipe or a device cannot be read twice, and assimp reads most files more than once.
   if (!fs::is_regular_file(status)) return unreadable(path, "is not a regular file");
-  const FileHandle file(std::fopen(path.c_str(), "rb"));
+  const FileHandle file = open_to_read(path);
   if (!file) return input_failure(path.string(), errno, named_in);
   if (std::fgetc(file.get()) != EOF) return {};
   if (std::ferror(file.get()) != 0) return input_failure(path.string(), errno);

@@ -13,17 +13,20 @@
 #include <poll.h>
 #include <span>
 #include <string>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
 #include <utility>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 
 #include <fmt/format.h>
 
 #include "cooker/import/exception_error.h"
 #include "cooker/system/file_handle.h"
+#include "cooker/system/posix.h"
 #include "cooker/system/write_all.h"
 #include "format/bytes.h"
 
@@ -36,24 +39,34 @@ std::uint64_t page_bytes() {
   return static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
+// Where limits of memory are enforced (kLimitsMemory).
 std::uint64_t address_space() {
+#ifdef __linux__
   std::array<char, 64> line{};  // numbers of pages, and other figures
   const FileHandle file(std::fopen("/proc/self/statm", "r"));
   const bool is_read = file && std::fgets(line.data(), line.size(), file.get()) != nullptr;
   return is_read ? std::strtoull(line.data(), nullptr, 10) * page_bytes() : 0;
+#else
+  return 0;
+#endif
 }
 
-void limit(int resource, std::uint64_t most) {
+// An enumeration in the GNU C library, else an int.
+using Resource = decltype(RLIMIT_CPU);
+
+void limit(Resource resource, std::uint64_t most) {
   rlimit now{};
-  if (getrlimit(static_cast<__rlimit_resource>(resource), &now) != 0) return;
+  if (getrlimit(resource, &now) != 0) return;
   now.rlim_cur = now.rlim_max = std::min<rlim_t>(now.rlim_max, most);
-  static_cast<void>(setrlimit(static_cast<__rlimit_resource>(resource), &now));
+  static_cast<void>(setrlimit(resource, &now));
 }
 
 // The code of the copy. It ends without the cleanup of exit(), which is the parent's.
 [[noreturn]] void be_child(int to_parent, const TrialLimits& limits,
                            const std::function<Status()>& work) {
+#ifdef __linux__  // elsewhere it goes on until it has read the file, or reaches its limits
   static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));
+#endif
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.cpu_seconds);
   if (kLimitsMemory) limit(RLIMIT_AS, address_space() + limits.bytes);
@@ -127,7 +140,7 @@ TrialLimits trial_limits(std::uint64_t file_bytes) {
 
 Status try_in_child(const TrialLimits& limits, const std::function<Status()>& work) {
   std::array<int, 2> ends;
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return no_child("pipe", errno);
+  if (!open_pipe(ends)) return no_child("pipe", errno);
   const pid_t child = ::fork();
   if (child < 0) {
     const int error = errno;

@@ -15,8 +15,9 @@ struct TrialLimits {
   std::uint64_t bytes;          // of address space, in addition to this process's own
 };
 
-/// Whether `bytes` is enforced: sanitizers reserve terabytes of address space.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // GCC
+/// Whether `bytes` is enforced: sanitizers reserve terabytes of address space, and what this
+/// process has of it only Linux tells.
+#if !defined(__linux__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // GCC
 inline constexpr bool kLimitsMemory = false;
 #elif !defined(__clang__)
 inline constexpr bool kLimitsMemory = true;

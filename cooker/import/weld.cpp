@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "cooker/import/hash_mix.h"
+#include "cooker/system/prefetch.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -64,7 +65,7 @@ std::uint32_t Welder<T>::add(const std::array<T, 3>& position) {
 
 template <class T>
 void Welder<T>::prefetch(const std::array<T, 3>& position) const {
-  __builtin_prefetch(&table_[hash_bits(position.data()) & (table_.size() - 1)]);
+  cooker::prefetch(&table_[hash_bits(position.data()) & (table_.size() - 1)]);
 }
 
 template <class T>

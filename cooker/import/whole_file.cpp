@@ -23,7 +23,7 @@ constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
                    const std::function<void(const char* bytes, std::size_t count)>& sink,
                    const std::string& named_in) {
-  const FileHandle file(std::fopen(path.c_str(), "rb"));
+  const FileHandle file = open_to_read(path);
   if (!file) return input_failure(path.string(), errno, named_in);
   std::vector<char> chunk(kChunkBytes);
   std::uint64_t left = most;

@@ -36,7 +36,7 @@ constexpr std::array kFormats = {
     Format{"glb", [](const Reordering& r, ByteSink& out) { return reorder_gltf(r, true, out); }},
 };
 
-fs::path folder_of(const fs::path& file) {
+fs::path full_folder_of(const fs::path& file) {
   std::error_code error;
   const fs::path absolute = fs::absolute(file, error);
   if (error) return file.parent_path();
@@ -81,7 +81,7 @@ Result<AtomicFile> write_reordered(const fs::path& source, std::span<const Sourc
   Result<AtomicFile> file = AtomicFile::create(target);
   if (!file) return file;
   ByteSink out(*file);
-  const Reordering reordering{*text, faces, folder_of(source), folder_of(target)};
+  const Reordering reordering{*text, faces, full_folder_of(source), full_folder_of(target)};
   const Status written = find_extension(kFormats, target)->write(reordering, out);
   if (!written) return in_file(source, written.error());
   if (Status status = out.finish(); !status) return status.error();
@@ -89,8 +89,8 @@ Result<AtomicFile> write_reordered(const fs::path& source, std::span<const Sourc
 }
 
 bool is_mesh_of(const fs::path& mesh, const fs::path& cooked, ImportOptions import) {
-  Result<File> file = File::open(cooked);
-  if (!file) file = open_blob(cooked);
+  Result<File> file = File::open(cooked.string());
+  if (!file) file = open_blob(cooked.string());
   if (!file || file->tree_count() != 1) return false;
   const TreeRecord record = OpenFile::of(*file).tree_record(0);
   if ((record.flags & kTreeFacesInSourceOrder) == 0) return false;

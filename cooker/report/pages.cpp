@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Counts pages by protecting the mapped file: the first read of a page raises a signal, whose
 // handler records the page and makes it readable. Unlike counts of faults or resident pages, this
-// excludes pages that a kernel maps or reads ahead, and needs no privileges.
+// excludes pages that a kernel maps or reads ahead, and needs no privileges. Compiled on Windows,
+// this is nothing: see pages_windows.cpp.
+#ifndef _WIN32
 #include "cooker/report/pages.h"
 
 #include <algorithm>
@@ -246,3 +248,4 @@ Result<PageFigures> measure_pages(const std::filesystem::path& path, std::uint32
 }
 
 }  // namespace boxtree::cooker
+#endif

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <unistd.h>
 #include <utility>
 
 #include <boxtree/blob.h>
@@ -34,7 +33,7 @@ Result<BlobSizes> measure_blob(const EncodedTree& tree, BlobMethod method) {
   if (!scratch) return scratch.error();
   Status status;
   sizes.open_us = 1e6 * median_seconds(kOpenRuns, [&] {
-                    const Result<File> opened = open_blob(scratch->path());
+                    const Result<File> opened = open_blob(scratch->path().string());
                     const Result<Tree> bound =
                         opened ? Tree::bind(*opened) : Result<Tree>(opened.error());
                     const Status answered = bound ? first_query(*bound) : bound.error();

@@ -10,6 +10,7 @@
 
 namespace boxtree::cooker {
 
+#ifdef __linux__
 Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
   static constexpr const char* kTitle = "a temporary file";
   Result<TemporaryFile> file = TemporaryFile::create_in_memory(kTitle);
@@ -20,5 +21,13 @@ Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
 
 ScratchFile::ScratchFile(TemporaryFile file)
     : file_(std::move(file)), path_("/proc/self/fd/" + std::to_string(file_.descriptor())) {}
+#else
+// Files in memory have no path there.
+Result<ScratchFile> ScratchFile::create(std::span<const std::byte> /*bytes*/) {
+  return Error{Errc::kFeatureUnsupported, "reports are measured on Linux alone; make them there"};
+}
+
+ScratchFile::ScratchFile(TemporaryFile file) : file_(std::move(file)) {}
+#endif
 
 }  // namespace boxtree::cooker

@@ -16,7 +16,7 @@ namespace boxtree::cooker {
 /// by the disk: times are of cached pages anyway, and pages are counted by reads of memory.
 class ScratchFile {
  public:
-  /// Writes it. Error: kWriteFailed.
+  /// Writes it. Errors: kWriteFailed; kFeatureUnsupported on other systems than Linux.
   static Result<ScratchFile> create(std::span<const std::byte> bytes);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "cooker/choose/measure.h"
+#include "cooker/system/process.h"
 
 namespace boxtree::cooker {
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <sys/utsname.h>
 #include <thread>
+#ifndef _WIN32
+#include <sys/utsname.h>
+#endif
 
 #include <fmt/format.h>
 
@@ -189,14 +191,16 @@ Surroundings surroundings(const std::string& command) {
   around.processor = line_of("/proc/cpuinfo", "model name");
   if (around.processor.empty()) around.processor = "unknown";
   around.threads = std::to_string(std::thread::hardware_concurrency());
+#ifndef _WIN32
   utsname system{};
   if (::uname(&system) == 0) {
     around.system = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
   }
-  around.compiler = kCompiler;
-  around.version = kVersion;
   double load = 0;
   if (::getloadavg(&load, 1) == 1) around.load = fmt::format("{:.2f}", load);
+#endif
+  around.compiler = kCompiler;
+  around.version = kVersion;
   around.command = command;
   return around;
 }

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+
+#include "format/bytes.h"
 
 namespace boxtree::cooker {
 
@@ -12,5 +15,11 @@ struct CloseFile {
 };
 
 using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
+
+/// Opens a file to be read as bytes; null, with the reason in errno, if that fails.
+[[nodiscard]] FileHandle open_to_read(const std::filesystem::path& path);
+
+/// The same of bytes that are in memory and outlive it. Precondition: they are not empty.
+[[nodiscard]] FileHandle open_to_read(Bytes bytes);
 
 }  // namespace boxtree::cooker

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <cerrno>
-#include <unistd.h>
+#include <cstddef>
 
+#include "cooker/system/descriptor.h"
 #include "format/bytes.h"
 
 namespace boxtree::cooker {
@@ -12,7 +13,7 @@ namespace boxtree::cooker {
 /// Writes all bytes. False, with the reason in errno, if the system takes no more.
 [[nodiscard]] inline bool write_all(int descriptor, Bytes bytes) noexcept {
   while (!bytes.empty()) {
-    const ssize_t wrote = ::write(descriptor, bytes.data(), bytes.size());
+    const std::ptrdiff_t wrote = write_some(descriptor, bytes);
     if (wrote < 0 && errno == EINTR) continue;
     if (wrote < 0) return false;
     bytes = bytes.subspan(static_cast<std::size_t>(wrote));

@@ -17,6 +17,9 @@ namespace boxtree::cooker {
 /// it is not a link. Error: kWriteFailed for a loop.
 Result<std::filesystem::path> follow_links(const std::filesystem::path& target);
 
+/// The folder that a file is in, "." for a name alone.
+[[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& target);
+
 /// Collects bytes in a TemporaryFile beside the target and renames it to the target. Files left by
 /// a killed process are removed by the next AtomicFile for the same target. If the target is a
 /// link, the file that it leads to is replaced. An existing file keeps its mode, and its owner if
@@ -45,14 +48,17 @@ class AtomicFile {
   /// Whether commit() would replace a file that has bytes, and not the same as the new one.
   [[nodiscard]] bool loses_bytes() const;
 
-  /// Makes the bytes durable and moves them to the target: fsync, rename, fsync of the directory.
-  /// After an error the target is the old file, or missing if there was none. A stream may have
-  /// taken a part of the bytes.
+  /// Makes the bytes durable and moves them to the target: fsync, rename, fsync of the directory;
+  /// on Windows FlushFileBuffers, ReplaceFile, and descriptor() is closed then. After an error the
+  /// target is the old file, or missing if there was none. A stream may have taken a part of the
+  /// bytes.
   Status commit();
 
  private:
   AtomicFile(TemporaryFile temporary, std::filesystem::path target, bool replaces);
 
+  static Result<AtomicFile> create_beside(const std::filesystem::path& given);
+  Status replace_target();
   [[nodiscard]] Status send() const;
 
   TemporaryFile temporary_;

@@ -15,14 +15,16 @@ namespace boxtree::cooker {
 /// An open file in a folder. If the file system supports it (O_TMPFILE), the file has no name until
 /// add_name(), so that a killed process leaves nothing behind. Otherwise, and while it has a name,
 /// it is called ".NAME.RANDOM.cooking", and the next TemporaryFile with the same folder and name
-/// removes files of killed processes. Not for use by several threads at once.
+/// removes files of killed processes. On Windows it always has a name. Not for use by several
+/// threads at once.
 class TemporaryFile {
  public:
   /// Error: kWriteFailed, with the path folder/name and the cause.
   static Result<TemporaryFile> create(const std::filesystem::path& folder, std::string_view name,
                                       mode_t mode);
 
-  /// In memory, without a folder; it cannot be given a name. Error: kWriteFailed, with `title`.
+  /// In memory (open_memory_file), without a folder; it cannot be given a name. Error:
+  /// kWriteFailed, with `title`.
   static Result<TemporaryFile> create_in_memory(const std::string& title);
 
   TemporaryFile(TemporaryFile&& other) noexcept;
@@ -40,10 +42,14 @@ class TemporaryFile {
   /// Gives the file its name if it has none. Error: kWriteFailed.
   Status add_name();
   /// Removes the name; processes that have the file open can still use it. If this fails, the
-  /// destructor tries again.
+  /// destructor tries again. Windows deletes no open file, so there it is closed.
   void remove_name();
   /// Call when the name has been moved: this object no longer removes it.
   void release_name() { is_named_ = false; }
+#ifdef _WIN32
+  /// Closes it: what is open cannot be renamed. descriptor() is -1 then.
+  void close();
+#endif
 
  private:
   TemporaryFile() = default;

@@ -2,7 +2,10 @@
 // Sets the floating-point state in which every query computes, whatever its caller has set.
 #pragma once
 
-#if defined(__SSE2__)
+#if defined(_MSC_VER) && !defined(__clang__)  // not tested
+#include <intrin.h>
+#endif
+#if defined(__SSE2__) || defined(_M_X64)
 #include <xmmintrin.h>
 #elif defined(__aarch64__)
 #include <cstdint>
@@ -15,7 +18,7 @@ namespace boxtree {
 /// nanoseconds; it is written only if it differs. Visitors are called in this state.
 class DefaultFloatState {
  public:
-#if defined(__SSE2__)
+#if defined(__SSE2__) || defined(_M_X64)
   DefaultFloatState() noexcept : before_(_mm_getcsr()) {
     if (is_default()) return;
     _mm_setcsr(kDefault);
@@ -57,7 +60,11 @@ class DefaultFloatState {
 #endif
   // No operand is loaded before, and no result stored after, a change of the state.
   static void fence() noexcept {
+#if defined(_MSC_VER) && !defined(__clang__)
+    _ReadWriteBarrier();
+#else
     asm volatile("" : : : "memory");
+#endif
   }
 
  public:

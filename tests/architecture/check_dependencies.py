@@ -22,8 +22,8 @@ PARTS = list(ORDER)
 # Other people's headers that a part may include, beside those of the C++ standard library.
 LIBRARIES = {
     "format": (),
-    "runtime": ("Eigen/", "hwy/", "xxhash.h", "lzma.h", "zstd.h", "xmmintrin.h",
-                "sys/", "fcntl.h", "unistd.h", "windows.h"),
+    "runtime": ("Eigen/", "hwy/", "xxhash.h", "lzma.h", "zstd.h", "xmmintrin.h", "intrin.h",
+                "sys/", "fcntl.h", "io.h", "unistd.h", "windows.h"),
 }
 # What takes seconds of every source that sees it, and what of the project may include it.
 SLOW_HEADERS = {"CLI/": ("cooker/cli/command_app.h",),

@@ -8,7 +8,9 @@
 #error "boxtree needs C++20: compile with -std=c++20, or link boxtree::runtime in CMake"
 #endif
 
-#ifdef BOXTREE_BUILDS_SHARED
+#if defined(BOXTREE_BUILDS_SHARED) && defined(_MSC_VER)  // not tested
+#define BOXTREE_API __declspec(dllexport)
+#elif defined(BOXTREE_BUILDS_SHARED)
 #define BOXTREE_API __attribute__((visibility("default")))
 #else
 #define BOXTREE_API

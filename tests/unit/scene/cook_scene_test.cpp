@@ -75,7 +75,7 @@ class CookedFileOf {
   // Without a source where the profile names it.
   CookedFileOf(const fs::path& source, const CookOptions& options, const fs::path& profile = {})
       : summary(require(cook_job(job(source, options, profile)))),
-        file(require(File::open(folder_.path() / "scene.bxt"))),
+        file(require(File::open((folder_.path() / "scene.bxt").string()))),
         scene(require(Scene::bind(file))) {}
 
  private:
@@ -432,7 +432,7 @@ external = true
   const fs::path out = folder.path() / "out.bxt";
   const Summary summary = require(cook_job(scene_job({kLevel}, out, text)));
   EXPECT_EQ(kept_bytes(summary), summary.file_bytes);
-  const File file = require(File::open(out));
+  const File file = require(File::open(out.string()));
   EXPECT_TRUE(verify_file(file).empty());
   EXPECT_EQ(Scene::bind(file).code(), Errc::kExternalMeshNeeded);
   const SourceScene source = require(import_scene(kLevel));
@@ -485,11 +485,11 @@ TEST(CookScene, OneFileIsCookedAsWhatItIs) {
   const fs::path obj = fs::path(BOXTREE_SOURCE_FOLDER) / "samples/meshes/crate.obj";
   const Summary mesh = require(cook_job({{obj}, folder.path() / "mesh.bxt"}));
   EXPECT_FALSE(mesh.scene.has_value());
-  const File without = require(File::open(folder.path() / "mesh.bxt"));
+  const File without = require(File::open((folder.path() / "mesh.bxt").string()));
   EXPECT_EQ(Scene::bind(without).code(), Errc::kNoScene);
   const Summary scene = require(cook_job({{kLevel}, folder.path() / "scene.bxt"}));
   EXPECT_TRUE(scene.scene.has_value());
-  const File with = require(File::open(folder.path() / "scene.bxt"));
+  const File with = require(File::open((folder.path() / "scene.bxt").string()));
   EXPECT_TRUE(Scene::bind(with).ok());
 }
 
@@ -643,7 +643,7 @@ TEST(CookScene, WhatSeveralFilesShareIsThereOnce) {
   const fs::path out = folder.path() / "out.bxt";
   const Summary summary = require(cook_job(scene_job(inputs, out)));
   EXPECT_EQ(summary.scene->meshes, 3u);
-  const File file = require(File::open(out));
+  const File file = require(File::open(out.string()));
   const Scene scene = require(Scene::bind(file));
   EXPECT_EQ(scene.instance_count(), 4u);
   EXPECT_EQ(scene.trees().size(), 3u);

@@ -179,7 +179,7 @@ TEST(TreeMaterials, OfOneNameAreOneInAllTreesOfAFile) {
   const auto c = folder.write("c.obj", points + "f 1 2 3\n");
   const auto out = folder.path() / "out.bxt";
   static_cast<void>(require(cooker::cook_job(job_of({a, b, c}, out))));
-  const File file = require(File::open(out));
+  const File file = require(File::open(out.string()));
   using Names = std::vector<std::string>;
   const Tree first = require(Tree::bind(file, 0));
   EXPECT_EQ(first.material_count(), 3u);
@@ -200,7 +200,7 @@ TEST(TreeMaterials, OfFacesThatWereSkippedAreNotStored) {
     job.as_scene = as_scene;
     job.options.import.skip_bad = true;
     static_cast<void>(require(cooker::cook_job(job)));
-    const File file = require(File::open(out));
+    const File file = require(File::open(out.string()));
     const Tree tree = require(Tree::bind(file, 0));
     EXPECT_EQ(tree.material_count(), 1u);
     EXPECT_EQ(names_by_id(tree), std::vector<std::string>{"kept"});
@@ -222,7 +222,7 @@ TEST(TreeMaterials, OfAMeshThatIsWrittenInTheOrderOfTheTreeAreThoseOfItsFaces) {
   cooker::CookJob job = job_of({folder.write("a.obj", text)}, out);
   job.reordered = folder.path() / "b.obj";
   static_cast<void>(require(cooker::cook_job(job)));
-  const File file = require(File::open(out));
+  const File file = require(File::open(out.string()));
   const Tree tree = require(Tree::bind(file));
   cooker::ImportOptions options;
   options.materials = true;

@@ -245,7 +245,7 @@ TEST(UserData, OfFacesThatAreLeftIsTheirOwn) {
   for (const bool as_scene : {false, true}) {
     job.as_scene = as_scene;
     static_cast<void>(require(cooker::cook_job(job)));
-    const File file = require(File::open(job.output));
+    const File file = require(File::open(job.output.string()));
     EXPECT_EQ(numbers_by_id(require(Tree::bind(file, 0))), kWanted);
   }
 }
@@ -267,7 +267,7 @@ TEST(UserData, OfAMeshThatIsWrittenInTheOrderOfTheTreeIsThatOfItsFaces) {
   job.reordered = folder.path() / "b.obj";
   job.options.import.user_data = "groups";
   static_cast<void>(require(cooker::cook_job(job)));
-  const File file = require(File::open(job.output));
+  const File file = require(File::open(job.output.string()));
   const auto numbers = numbers_by_id(require(Tree::bind(file)));
   ASSERT_EQ(numbers.size(), 30u);
   // A face of the new order is told by its x.
@@ -294,14 +294,14 @@ TEST(UserData, OfASceneIsRequestedByItsProfile) {
     job.output = folder.path() / "out.bxt";
     job.options.import.skip_bad = true;
     const cooker::Summary summary = require(cooker::cook_job(job));
-    const auto line =
-        std::find_if(summary.why.begin(), summary.why.end(),
-                     [](const auto& each) { return each.part.find("user_data") < 6; });
+    const auto line = std::find_if(summary.why.begin(), summary.why.end(), [](const auto& each) {
+      return each.part.find("user_data") < 6;
+    });
     ASSERT_NE(line, summary.why.end());
     EXPECT_EQ(line->part, "face_user_data");
     EXPECT_EQ(line->bytes, 3u);
     EXPECT_EQ(line->line, "scene.toml:3: user_data = \"groups\"");
-    const File file = require(File::open(job.output));
+    const File file = require(File::open(job.output.string()));
     const Scene scene = require(Scene::bind(file));
     const auto at = [&](double x, double y) {
       const auto hit = require(closest_hit(scene, {{x, y, 1}, {0, 0, -1}}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A name only while it is requested, and no litter, of this owner's or of a dead one's.
+#ifndef _WIN32
 #include "cooker/write/temporary_file.h"
 
 #include <fcntl.h>
@@ -95,3 +96,4 @@ TEST(TemporaryFile, AFolderThatRefusesIsNamed) {
 
 }  // namespace
 }  // namespace boxtree::cooker
+#endif

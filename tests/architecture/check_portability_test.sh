@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Uses that check_portability.py has to find, and those that it must not.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$work/cooker/system"
+expect() {
+  local faults=$1
+  cat >"$work/cooker/system/subject.cpp"
+  local found
+  found=$(python3 "$here/check_portability.py" "$work" | grep -c "subject.cpp" || true)
+  [ "$found" = "$faults" ] || { echo "expected $faults faults, found $found in:"; cat "$work/cooker/system/subject.cpp"; exit 1; }
+}
+expect 1 <<'X'
+int file = ::memfd_create("x", 0);
+X
+expect 1 <<'X'
+#ifdef _WIN32
+#include <unistd.h>
+#endif
+X
+expect 2 <<'X'
+#ifdef __linux__
+int file = ::memfd_create("x", 0);
+#else
+int other = ::memfd_create("x", 0);
+#endif
+const char* self = "/proc/self/maps";
+X
+expect 1 <<'X'
+#ifdef _WIN32
+#include <windows.h>
+#else
+#include <windows.h>
+#include <sys/mman.h>
+#endif
+X
+expect 0 <<'X'
+// memfd_create, as a comment says
+#ifndef _WIN32
+#include <sys/mman.h>
+#endif
+#if defined(__GNUC__)
+int x = __builtin_ctz(4);
+#endif
+X
+echo "uses without their condition are found"
