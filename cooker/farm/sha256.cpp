@@ -2,8 +2,6 @@
 #include "cooker/farm/sha256.h"
 
 #include <charconv>
-#include <new>
-#include <openssl/evp.h>
 #include <span>
 #include <system_error>
 
@@ -12,36 +10,8 @@
 #include "cooker/import/whole_file.h"
 
 namespace boxtree::cooker {
-namespace {
-
-// OpenSSL fails here for want of memory alone: the digest is built in, and contexts are used once.
-void check(int result) {
-  if (result != 1) throw std::bad_alloc();
-}
-
-}  // namespace
-
-void Sha256::Free::operator()(evp_md_ctx_st* context) const {
-  EVP_MD_CTX_free(context);
-}
-
-Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
-  check(context_ ? EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) : 0);
-}
-
-void Sha256::add(Bytes bytes) {
-  check(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
-}
-
 void Sha256::add(std::string_view text) {
   add(std::as_bytes(std::span(text)));
-}
-
-Digest Sha256::finish() {
-  Digest digest;
-  check(
-      EVP_DigestFinal_ex(context_.get(), reinterpret_cast<unsigned char*>(digest.data()), nullptr));
-  return digest;
 }
 
 Digest sha256_of(Bytes bytes) {

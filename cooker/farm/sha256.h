@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// SHA-256 (FIPS 180-4), by OpenSSL: what names content in keys and caches, where nobody may make
-// two contents of one name.
+// SHA-256 (FIPS 180-4), by OpenSSL, or by the system on Windows: what names content in keys and
+// caches, where nobody may make two contents of one name.
 #pragma once
 
 #include <array>
@@ -14,8 +14,6 @@
 #include <boxtree/error.h>
 
 #include "format/bytes.h"
-
-struct evp_md_ctx_st;
 
 namespace boxtree::cooker {
 
@@ -31,10 +29,11 @@ class Sha256 {
   [[nodiscard]] Digest finish();
 
  private:
+  struct Context;  // of the library
   struct Free {
-    void operator()(evp_md_ctx_st* context) const;
+    void operator()(Context* context) const;
   };
-  std::unique_ptr<evp_md_ctx_st, Free> context_;
+  std::unique_ptr<Context, Free> context_;
 };
 
 [[nodiscard]] Digest sha256_of(std::string_view text);

@@ -21,15 +21,24 @@ constexpr std::array kEndings = {
     "q3s",   "raw", "scn",     "sib",       "smd",     "step", "stl",     "stp",  "ter",    "uc",
     "vta",   "x",   "x3d",     "x3db",      "xgl",     "xml",  "zae",     "zgl"};
 
+Error unsupported(const SourceFile& source) {
+  return {Errc::kFeatureUnsupported,
+          fmt::format("{}: expected .obj, .off, .ply or .stl, which this boxtree reads, found {}: "
+                      "it was built without assimp (BOXTREE_ASSIMP=OFF); cook it by one that has "
+                      "it, or convert it",
+                      source.title(), source.path().extension().string())};
+}
+
 }  // namespace
 
 Status import_with_assimp(const SourceFile& source, const ImportOptions& /*options*/,
                           ImportWanted /*wanted*/, ImportedFile& /*out*/) {
-  return Error{Errc::kFeatureUnsupported,
-               fmt::format("{}: expected .obj, .off, .ply or .stl, which this boxtree reads, found "
-                           "{}: it was built without assimp (BOXTREE_ASSIMP=OFF); cook it by one "
-                           "that has it, or convert it",
-                           source.title(), source.path().extension().string())};
+  return unsupported(source);
+}
+
+Result<std::vector<std::filesystem::path>> list_assimp_files(const SourceFile& source,
+                                                             const ImportOptions& /*options*/) {
+  return unsupported(source);
 }
 
 std::vector<std::string> assimp_endings() {

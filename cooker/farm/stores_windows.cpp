@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// In place of the cache and the journal, which other processes are kept from by locks of POSIX.
+#include "cooker/farm/cook_cache.h"
+#include "cooker/farm/journal.h"
+
+namespace boxtree::cooker {
+namespace {
+
+Error unsupported(const char* what) {
+  return {Errc::kFeatureUnsupported,
+          std::string(what) + " are not there on Windows; cook on Linux, or each mesh by a cook"};
+}
+
+}  // namespace
+
+Result<CookCache> CookCache::open(const std::filesystem::path& /*folder*/,
+                                  std::uint64_t /*most_bytes*/) {
+  return unsupported("caches");
+}
+
+Result<std::optional<CookCache::Entry>> CookCache::fetch(
+    const Digest& /*key*/, const std::filesystem::path& /*output*/) const {
+  return unsupported("caches");
+}
+
+Result<CookCache::Entry> CookCache::store(const Digest& /*key*/,
+                                          const std::filesystem::path& /*output*/,
+                                          const std::string& /*report*/) const {
+  return unsupported("caches");
+}
+
+Result<Journal> Journal::open(const std::filesystem::path& /*path*/) {
+  return unsupported("manifests");
+}
+
+Journal::Journal(Journal&& other) noexcept
+    : path_(std::move(other.path_)), descriptor_(other.descriptor_) {}
+Journal::~Journal() = default;
+
+std::optional<Journal::Entry> Journal::find(const std::filesystem::path& /*output*/,
+                                            const Digest& /*key*/) const {
+  return std::nullopt;
+}
+
+Status Journal::add(const std::filesystem::path& /*output*/, const Entry& /*entry*/) {
+  return unsupported("manifests");
+}
+
+}  // namespace boxtree::cooker
