@@ -205,6 +205,7 @@ Command::Command(const std::string& name, const std::string& description,
       description_(description),
       parent_(nullptr),
       app_(std::make_shared<CommandApp>(*this, description, nullptr)) {
+  app_->allow_windows_style_options(false);  // /folder/level.obj is a file there, too
   app_->set_version_flag("-V,--version", version);
   app_->formatter(std::make_shared<HelpFormatter>());
   app_->set_help_flag("-h,--help", "Print the common options");

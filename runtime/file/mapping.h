@@ -31,10 +31,8 @@ class Mapping {
   /// cooker does. Use copy() for files that others may modify.
   static Result<Mapping> map(const std::string& path);
 
-#ifndef _WIN32
   /// Maps a file that is open already; `name` is for messages. The caller keeps the descriptor.
   static Result<Mapping> map(int descriptor, const std::string& name);
-#endif
 
   /// Reads `path` into private memory, which later changes of the file do not affect.
   static Result<Mapping> copy(const std::string& path);
@@ -55,6 +53,8 @@ class Mapping {
   std::size_t size_ = 0;
   bool is_of_file_ = false;  // else a copy in memory
 #ifdef _WIN32
+  static Result<Mapping> map_handle(void* file, const std::string& name);
+
   void* file_ = nullptr;  // what keeps others from writing to a mapped file
 #endif
 };

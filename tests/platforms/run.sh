@@ -8,9 +8,9 @@
 #                compared with what the first platform answered
 #   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake;
 #                scalar: without vectors; sse4, avx512: walks by other vectors; O0, clang, libcxx: other compilers and libraries;
-#                windows: x86-64 under Wine; arm64, armhf, riscv64, i386: under qemu or as they are;
-#                wasm: under Node; farm: no queries, but cooks by Bazel and by
-#                Slurm (tests/farm)
+#                windows: x86-64 under Wine, the interface in C; windows-cli: the command line there, compared with
+#                this machine's; windows-suites: tests there; arm64, armhf, riscv64, i386: under qemu or as they are;
+#                wasm: under Node; farm: no queries, but cooks by Bazel and by Slurm (tests/farm)
 # Environment: BOXTREE_BUILD, where boxtree is built, whose command line cooks [build]
 # shellcheck disable=SC2317 # platforms are called by name
 set -euo pipefail
@@ -18,7 +18,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 source=$(cd "$here/../.." && pwd)
 build=${BOXTREE_BUILD:-$source/build}
 work=$build/platforms
-known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows arm64 armhf riscv64 i386 wasm farm"
+known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows windows-cli windows-suites arm64 armhf riscv64 i386 wasm farm"
 count=15000
 if [ "${1:-}" = --count ]; then
   count=$2
@@ -169,13 +169,28 @@ platform_libcxx() {
   static libcxx clang -lc++ -lc++abi -lm || return 0
   conclude libcxx "$work/libcxx/digests"
 }
+# built_for_windows NAME TARGET...: in $work/windows, whichever platform comes first. Tests are of GoogleTest's source.
+built_for_windows() {
+  local name=$1 log=$work/windows.log
+  shift
+  install_missing g++-mingw-w64-x86-64-posix wine wine64 googletest
+  export WINEDEBUG=-all WINEPREFIX="$work/wine"
+  if cmake -S "$source" -B "$work/windows" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_SYSTEM_NAME=Windows \
+    -DCMAKE_SYSTEM_PROCESSOR=x86_64 -DCMAKE_C_COMPILER=x86_64-w64-mingw32-gcc-posix \
+    -DCMAKE_CXX_COMPILER=x86_64-w64-mingw32-g++-posix -DCMAKE_RC_COMPILER=x86_64-w64-mingw32-windres \
+    -DBOXTREE_BUILD_COOKER=ON -DBOXTREE_BUILD_SAMPLES=OFF >"$log" 2>&1 &&
+    cmake --build "$work/windows" --target "$@" >>"$log" 2>&1; then
+    return 0
+  fi
+  grep -E 'error|Error' "$log" | head -5
+  fail "$name" "does not build, see $log"
+  return 1
+}
 platform_windows() {
-  install_missing g++-mingw-w64-x86-64-posix wine wine64
-  cross windows Windows x86_64 x86_64-w64-mingw32-g++-posix -DCMAKE_RC_COMPILER=x86_64-w64-mingw32-windres || return 0
+  built_for_windows windows boxtree_c boxtree_c_static || return 0
   cp "$work/windows/runtime/boxtree.dll" "$work/windows/"
   x86_64-w64-mingw32-gcc-posix -std=c99 -O2 -I"$source/runtime/include" "$here/digests.c" -o "$work/windows/digests.exe" \
     "$work/windows/runtime/libboxtree.dll.a" || { fail windows "the program does not compile"; return 0; }
-  export WINEDEBUG=-all WINEPREFIX="$work/wine"
   rm -rf "$work/windows/files"
   mkdir "$work/windows/files"
   if ! (
@@ -188,6 +203,39 @@ platform_windows() {
     return 0
   fi
   conclude windows "$work/windows/digests.exe" wine
+}
+platform_windows-cli() {
+  built_for_windows windows-cli boxtree_cli || return 0
+  local folder=$work/windows/compared
+  rm -rf "$folder"
+  mkdir "$folder"
+  (cd "$work" && cp "${files[@]}" "$folder")
+  if "$here/windows_command_line.sh" "$build/boxtree" "$work/windows/boxtree.exe" "$source" "$folder" >"$work/windows-cli.txt"; then
+    echo "PASS windows-cli $(tail -1 "$work/windows-cli.txt")"
+  else
+    head -5 "$work/windows-cli.txt"
+    fail windows-cli "does not do what this machine's does, see $work/windows-cli.txt"
+  fi
+}
+# A line for each program that fails; at last the number of their tests.
+platform_windows-suites() {
+  built_for_windows windows-suites boxtree_suites || return 0
+  local program name passed=0 failing=()
+  while read -r program; do
+    name=$(basename "$program" .exe)
+    if WINEPATH="$work/windows/runtime" wine "$program" --gtest_brief=1 </dev/null 2>"$work/windows.$name.err" |
+      tr -d '\r' >"$work/windows.$name.txt"; then
+      passed=$((passed + $(grep -oE '^\[  PASSED  \] [0-9]+' "$work/windows.$name.txt" | grep -oE '[0-9]+$')))
+    else
+      failing+=("$name")
+      { grep -E '^\[  FAILED  \]|Failure' "$work/windows.$name.txt" || tail -3 "$work/windows.$name.err"; } | head -5
+    fi
+  done <"$work/windows/suites.txt"
+  if [ ${#failing[@]} = 0 ]; then
+    echo "PASS windows-suites $passed tests"
+  else
+    fail windows-suites "${failing[*]}: see $work/windows.NAME.txt"
+  fi
 }
 platform_arm64() { emulated arm64 aarch64 aarch64-linux-gnu "g++-aarch64-linux-gnu qemu-user-static" qemu-aarch64-static; }
 platform_armhf() { emulated armhf armv7l arm-linux-gnueabihf "g++-arm-linux-gnueabihf qemu-user-static" qemu-arm-static; }

@@ -18,24 +18,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The library of mingw-w64 (g++ 12) makes none.
+#ifdef _WIN32
+constexpr bool kHasLinks = false;
+#else
+constexpr bool kHasLinks = true;
+#endif
+
 TEST(Outputs, AreFilesOfTheirOwn) {
   const test::TempFolder folder;
   const fs::path mesh = folder.write("m.obj", "v 0 0 0\n");
   fs::create_hard_link(mesh, folder.path() / "hard");
-  fs::create_symlink(mesh, folder.path() / "soft");
   fs::create_directory(folder.path() / "sub");
-  fs::create_symlink("new", folder.path() / "dangling");
+  if (kHasLinks) {
+    fs::create_symlink(mesh, folder.path() / "soft");
+    fs::create_symlink("new", folder.path() / "dangling");
+  }
   const auto code = [&](const fs::path& output, const fs::path& other) {
     return check_outputs(std::array{Output{folder.path() / output}, Output{other}},
                          std::array{mesh})
         .code();
   };
-  for (const char* same : {"m.obj", "./m.obj", "sub/../m.obj", "hard", "soft"}) {
+  for (const char* same : {"m.obj", "./m.obj", "sub/../m.obj", "hard"}) {
     EXPECT_EQ(code(same, ""), Errc::kWriteFailed) << same;
   }
   EXPECT_EQ(code("out", ""), Errc::kOk);
   EXPECT_EQ(code("out", folder.path() / "out"), Errc::kWriteFailed);
-  EXPECT_EQ(code("new", folder.path() / "dangling"), Errc::kWriteFailed);
+  if (kHasLinks) {
+    EXPECT_EQ(code("soft", ""), Errc::kWriteFailed);
+    EXPECT_EQ(code("new", folder.path() / "dangling"), Errc::kWriteFailed);
+  }
   EXPECT_EQ(code("out", folder.path() / "new"), Errc::kOk);
 }
 
