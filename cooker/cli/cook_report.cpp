@@ -452,36 +452,54 @@ std::vector<std::string> lost_surfaces(const std::vector<CookedTree>& trees) {
   return warnings;
 }
 
-// What names hide: names that several inputs, or several meshes of a scene, gave their trees, and
-// names that are the number of another tree.
-std::vector<std::string> hiding_names(const std::vector<CookedTree>& trees) {
-  struct Named {
-    std::size_t first;
-    std::size_t count = 0;
-  };
-  std::map<std::string, Named> named;
-  for (std::size_t i = 0; i < trees.size(); ++i) {
-    ++named.try_emplace(trees[i].tree.name, Named{i}).first->second.count;
-  }
-  std::vector<std::string> warnings;
+struct NamedTrees {
+  std::size_t first;
+  std::size_t count = 0;
+};
+
+// Names that are the number of another tree: the first in words, since a scene may have thousands.
+std::string numbers_as_names(const std::vector<CookedTree>& trees,
+                             const std::map<std::string, NamedTrees>& named) {
+  std::string warning;
+  std::size_t others = 0;
   for (std::size_t i = 0; i < trees.size(); ++i) {
     const auto found = named.find(fmt::format("{}", i));
     if (found == named.end() || found->second.first == i) continue;
-    warnings.push_back(fmt::format(
+    if (!warning.empty()) {
+      ++others;
+      continue;
+    }
+    const std::string& name = trees[i].tree.name;
+    const bool has_name = !name.empty() && named.at(name).first == i;
+    warning = fmt::format(
         "tree {0}: --tree {0} takes the tree of that name, number {1}; {2} tree number {0}, and "
         "\"tree\": {0} does in a line of a batch",
         i, found->second.first,
-        named.at(trees[i].tree.name).first == i && !trees[i].tree.name.empty()
-            ? fmt::format("--tree {} takes", trees[i].tree.name)
-            : "no --tree takes"));
+        has_name ? fmt::format("--tree {} takes", name) : "no --tree takes");
   }
-  const char* const numbers = warnings.empty() ? "any" : "those whose number is no name of another";
+  if (others > 0) {
+    warning += fmt::format("; {} other {}, too", others,
+                           others == 1 ? "number is a name" : "numbers are names");
+  }
+  return warning;
+}
+
+// What names hide that several inputs, or several meshes of a scene, gave their trees.
+std::vector<std::string> hiding_names(const std::vector<CookedTree>& trees) {
+  std::map<std::string, NamedTrees> named;
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    ++named.try_emplace(trees[i].tree.name, NamedTrees{i}).first->second.count;
+  }
+  std::vector<std::string> warnings;
+  const std::string of_numbers = numbers_as_names(trees, named);
+  if (!of_numbers.empty()) warnings.push_back(of_numbers);
   for (const auto& [name, of_name] : named) {
     if (of_name.count == 1 || name.empty()) continue;
     warnings.push_back(fmt::format(
         "tree {0}: {1} trees of the file have this name; --tree {0} and find_tree() take "
         "the first, --tree NUMBER {2}",
-        name, of_name.count, numbers));
+        name, of_name.count,
+        of_numbers.empty() ? "any" : "those whose number is no name of another"));
   }
   return warnings;
 }

@@ -30,11 +30,11 @@ std::vector<std::string> command_names(const Command& command) {
   return names;
 }
 
-// A command takes the options of those around it, too, except those of the program.
+// A kind of query takes the options of those around it, too, a command none of the program.
 std::vector<std::string> option_names(const Command& command) {
   std::vector<std::string> names;
   for (const Command* at = &command; at != nullptr; at = at->parent()) {
-    if (at != &command && at->parent() == nullptr) break;
+    if (at->parent() == nullptr && command.parent() == at) break;
     for (const CLI::Option* option : at->app().get_options()) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
@@ -112,9 +112,9 @@ std::string unknown_option(const Command& command, const std::string& word) {
   if (!owners.empty()) return start + "an option of " + listed(owners) + ", which comes before it";
   const Command* program = &command;
   while (program->parent() != nullptr) program = program->parent();
+  const std::string& name = program->name();
   if (has_option(*program, word)) {
-    return fmt::format("{}an option of {} alone; use '{} {}'", start, program->name(),
-                       program->name(), word);
+    return start + "an option of " + name + " alone; use '" + name + " " + word + "'";
   }
   const std::string meant = suggestion(word, option_names(command));
   if (!meant.empty() || command.parent() == nullptr) return start + "no option" + meant;

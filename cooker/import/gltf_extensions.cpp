@@ -32,20 +32,26 @@ constexpr std::array<std::string_view, 9> kWithoutGeometry = {
     "KHR_binary_glTF",          // glTF 1: where the buffer is, which assimp reads
 };
 
-// Those that change geometry and are read: gltf_positions.h.
-constexpr std::string_view kQuantization = "KHR_mesh_quantization";
+// Those that change geometry and are read.
+constexpr std::array<std::string_view, 2> kRead = {
+    "KHR_mesh_quantization",       // gltf_positions.h
+    "KHR_draco_mesh_compression",  // by assimp, which refuses it where it was built without Draco
+};
 
 struct Remedy {
   std::string_view extension;
   const char* text;
 };
 constexpr std::array kRemedies = {
-    Remedy{"KHR_draco_mesh_compression",
-           "export it without Draco (in Blender: Compression off; gltf-pipeline: without -d)"},
     Remedy{"EXT_meshopt_compression", "write it uncompressed (gltfpack: without -c and -cc)"},
     Remedy{"KHR_meshopt_compression", "write it uncompressed (gltfpack: without -c and -cc)"},
     Remedy{kInstancing, kInstancingRemedy},
 };
+
+template <std::size_t kCount>
+bool has(const std::array<std::string_view, kCount>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 bool cannot_change_geometry(std::string_view extension) {
   const std::size_t vendor = extension.find('_');
@@ -53,8 +59,7 @@ bool cannot_change_geometry(std::string_view extension) {
       vendor == std::string_view::npos ? std::string_view() : extension.substr(vendor + 1);
   const auto is_of = [kind](std::string_view known) { return kind.starts_with(known); };
   return std::any_of(kKindsWithoutGeometry.begin(), kKindsWithoutGeometry.end(), is_of) ||
-         std::find(kWithoutGeometry.begin(), kWithoutGeometry.end(), extension) !=
-             kWithoutGeometry.end();
+         has(kWithoutGeometry, extension);
 }
 
 }  // namespace
@@ -63,7 +68,7 @@ Status check_required_extensions(const Json& document) {
   for (const Json& listed : array_at(document, "extensionsRequired")) {
     if (!listed.is_string()) continue;
     const std::string extension = listed.get<std::string>();
-    if (extension == kQuantization || cannot_change_geometry(extension)) continue;
+    if (has(kRead, extension) || cannot_change_geometry(extension)) continue;
     const auto known = std::find_if(kRemedies.begin(), kRemedies.end(), [&](const Remedy& remedy) {
       return remedy.extension == extension;
     });

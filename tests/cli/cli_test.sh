@@ -565,8 +565,8 @@ See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
 # Found by a newcomer: it was told to mean itself.
 misspelt "boxtree: usage: cook: '--version' is an option of boxtree alone; use 'boxtree --version'
 See 'boxtree cook --help'." cook --version
-misspelt "boxtree: usage: query ray: '--version' is an option of boxtree alone; use 'boxtree --version'
-See 'boxtree query ray --help'." query cube.bxt ray --version
+misspelt "boxtree: usage: cook: '--versio' is no option
+See 'boxtree cook --help'." cook --versio
 misspelt "boxtree: usage: report: '--grid-bits' is no option of report, but of cook or key
 See 'boxtree report --help'." report cube.obj --grid-bits 16
 misspelt "boxtree: usage: cook: '--frobnicate' is no option

@@ -91,6 +91,15 @@ end_header
 3 0 2 3 7
 """
 
+INSTANCED = """{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"buffers": [{"byteLength": 36,
+"uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}
+"""
+
 # Sections of the page, and command lines with all that they print. [STATUS] of those that fail.
 ALL = "--min=-99,-99,-99 --max 99,99,99"
 VIEW = "0.01,0,0,0,0,0.01,0,0,0,0,0.005,0.5,0,0,0,1"
@@ -104,6 +113,8 @@ RUNS = {
         "cook crate.obj -o edges.bxt --active-edges 5",
         "cook field.obj -o groups.bxt --user-data groups",
         "cook --scene field.obj -o groups.bxt --user-data groups",
+        "cook instanced.gltf -o instanced.bxt",
+        "cook --scene instanced.gltf -o instanced.bxt",
         "cook field.obj -o field.bxt --materials",
         "cook field.obj -o stripped.bxt --strip",
         "cook field.obj -o no_ids.bxt --materials --no-face-ids",
@@ -332,7 +343,7 @@ class Runs:
         for name, text in (("parts.toml", PARTS), ("nameless.toml", NAMELESS), ("batch", BATCH),
                            ("results.json", RESULTS), ("one.jsonl", JOB % "crate"), ("bad.jsonl", JOB % "bad"),
                            ("absent.jsonl", JOB % "absent"), ("bad.obj", BAD), ("flat.obj", FLAT), ("field.obj", FIELD),
-                           ("zones.ply", ZONES),
+                           ("zones.ply", ZONES), ("instanced.gltf", INSTANCED),
                            ("peers", PEERS)):
             (work / name).write_text(text)
         (work / "peers").chmod(0o755)

@@ -82,6 +82,11 @@ TEST(ImportSceneModelsTest, CylinderEngine) {
   expect_sizes("glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb", {67, 29, 75730, 121496});
 }
 
+// The same compressed by Draco, which assimp reads, with fewer faces.
+TEST(ImportSceneModelsTest, CylinderEngineOfDraco) {
+  expect_sizes("glTF2/draco/2CylinderEngine.gltf", {67, 29, 65311, 110336});
+}
+
 TEST(ImportSceneModelsTest, MilkTruck) {
   expect_sizes("glTF/CesiumMilkTruck/CesiumMilkTruck.gltf", {3, 2, 2856, 3624});
 }

@@ -216,7 +216,7 @@ TEST_F(TextFormatTest, StatementsOfObjThatAreNotReadAreReported) {
                         "surf 0 1 0 1 \\\n1 2 3\nface 1 2 3\nend");
   std::vector<std::string> found;
   for (const Unread& part : got.report.unread) {
-    found.push_back(part.what + " " + std::to_string(part.count) + " " + std::to_string(part.line));
+    found.push_back(fmt::format("{} {} {}", part.what, part.count, part.line));
   }
   EXPECT_EQ(found, (std::vector<std::string>{"cstype 1 16", "deg 1 17", "surf 2 18", "end 2 19",
                                              "face 1 22"}));
@@ -224,7 +224,7 @@ TEST_F(TextFormatTest, StatementsOfObjThatAreNotReadAreReported) {
 
 TEST_F(TextFormatTest, FewStatementsOfObjThatAreNotReadAreListed) {
   std::string text = kVertices + "f 1 2 3\n";
-  for (int i = 0; i < 100; ++i) text += "x" + std::to_string(i) + "\nx0\n";
+  for (int i = 0; i < 100; ++i) text += fmt::format("x{}\nx0\n", i);
   const std::vector<Unread> unread = load("a.obj", text).report.unread;
   ASSERT_EQ(unread.size(), 33u);
   EXPECT_EQ(unread[0].count, 101u);
