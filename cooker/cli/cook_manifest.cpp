@@ -10,7 +10,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <unistd.h>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,6 +28,7 @@
 #include "cooker/farm/keyed_cook.h"
 #include "cooker/farm/run_within.h"
 #include "cooker/import/file_error.h"
+#include "cooker/system/process.h"
 #include "cooker/write/outputs.h"
 
 namespace boxtree::cooker {
@@ -44,8 +44,7 @@ double seconds_since(Clock::time_point start) {
 
 std::uint64_t memory_of(const FarmArguments& farm) {
   if (!farm.memory.empty()) return *byte_size(farm.memory);  // was checked when it was parsed
-  const auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
-  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) / 2;
+  return memory_bytes() / 2;
 }
 
 // Each shard has one, since a journal is one process's at a time. Empty: there is none.

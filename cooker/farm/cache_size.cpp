@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Compiled on Windows, this is nothing: see stores_windows.cpp.
+#ifndef _WIN32
 #include "cooker/farm/cache_size.h"
 
 #include <algorithm>
@@ -115,3 +117,4 @@ Status keep_cache_size(const fs::path& folder, std::uint64_t added_bytes,
 }
 
 }  // namespace boxtree::cooker
+#endif

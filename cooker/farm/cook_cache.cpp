@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Compiled on Windows, this is nothing: see stores_windows.cpp.
+#ifndef _WIN32
 #include "cooker/farm/cook_cache.h"
 
 #include <array>
@@ -167,3 +169,4 @@ Result<CookCache::Entry> CookCache::store(const Digest& key, const fs::path& out
 }
 
 }  // namespace boxtree::cooker
+#endif

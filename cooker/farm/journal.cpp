@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Compiled on Windows, this is nothing: see stores_windows.cpp.
+#ifndef _WIN32
 #include "cooker/farm/journal.h"
 
 #include <cerrno>
@@ -103,3 +105,4 @@ Status Journal::add(const fs::path& output, const Entry& entry) {
 }
 
 }  // namespace boxtree::cooker
+#endif

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Compiled on Windows, this is nothing: see sha256_windows.cpp.
+#ifndef _WIN32
 #include <new>
 #include <openssl/evp.h>
 
@@ -41,3 +43,4 @@ Digest Sha256::finish() {
 }
 
 }  // namespace boxtree::cooker
+#endif

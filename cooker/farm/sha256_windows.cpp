@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Compiled elsewhere, this is nothing: see sha256_openssl.cpp.
+#ifdef _WIN32
 #include <algorithm>
 #include <limits>
 #include <new>
@@ -58,3 +60,4 @@ Digest Sha256::finish() {
 }
 
 }  // namespace boxtree::cooker
+#endif

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // In place of the cache and the journal, which other processes are kept from by locks of POSIX.
+// Compiled elsewhere, this is nothing.
+#ifdef _WIN32
 #include "cooker/farm/cook_cache.h"
 #include "cooker/farm/journal.h"
 
@@ -47,3 +49,4 @@ Status Journal::add(const std::filesystem::path& /*output*/, const Entry& /*entr
 }
 
 }  // namespace boxtree::cooker
+#endif

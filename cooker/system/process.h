@@ -13,6 +13,9 @@ namespace boxtree::cooker {
 /// The most memory that the process had so far; 0 if that is not known.
 [[nodiscard]] std::uint64_t peak_bytes() noexcept;
 
+/// Of the machine; 0 if that is not known.
+[[nodiscard]] std::uint64_t memory_bytes() noexcept;
+
 /// Pages so far that were touched for the first time.
 [[nodiscard]] std::uint64_t page_faults() noexcept;
 

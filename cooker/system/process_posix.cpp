@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Compiled on Windows, this is nothing: see process_windows.cpp.
 #ifndef _WIN32
+#include <algorithm>
 #include <ctime>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "cooker/system/process.h"
 
@@ -30,6 +32,11 @@ std::uint64_t peak_bytes() noexcept {
   constexpr std::uint64_t kUnit = 1024;
 #endif
   return static_cast<std::uint64_t>(usage().ru_maxrss) * kUnit;
+}
+
+std::uint64_t memory_bytes() noexcept {
+  const auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
+  return pages * static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
 }
 
 std::uint64_t page_faults() noexcept {

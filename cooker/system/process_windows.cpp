@@ -29,6 +29,12 @@ std::uint64_t peak_bytes() noexcept {
   return counters().PeakWorkingSetSize;
 }
 
+std::uint64_t memory_bytes() noexcept {
+  MEMORYSTATUSEX status{};
+  status.dwLength = sizeof(status);
+  return ::GlobalMemoryStatusEx(&status) != 0 ? status.ullTotalPhys : 0;
+}
+
 std::uint64_t page_faults() noexcept {
   return counters().PageFaultCount;
 }
