@@ -170,8 +170,7 @@ Status Reader<T>::read_statement() {
     split_tokens(name, words_);
     groups_.begin(fmt::format("{}", fmt::join(words_, " ")));
   }
-  if (const std::string_view library = library_of(text); !library.empty())
-    libraries_.emplace_back(library);
+  if (keyword == kLibrary && !name.empty()) libraries_.emplace_back(name);
   // Vertex numbers count those of that file, too.
   if (keyword == "call") {
     return failure(
