@@ -19,6 +19,7 @@
 #include "cooker/cli/farm_report.h"
 #include "cooker/cli/json_output.h"
 #include "cooker/cli/output.h"
+#include "cooker/cli/seconds_since.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
 #include "cooker/cli/worker_threads.h"
@@ -92,10 +93,6 @@ Status check_files(const CookJob& job) {
     if (Status status = check_replaced(job.output, OutputKind::kCooked); !status) return status;
   }
   return check_replaced(job.depfile, OutputKind::kDepfile);
-}
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 int cook_through_cache(const Arguments& arguments, const CookCache& cache) {

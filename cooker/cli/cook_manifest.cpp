@@ -21,6 +21,7 @@
 #include "cooker/cli/json_output.h"
 #include "cooker/cli/manifest_jobs.h"
 #include "cooker/cli/output.h"
+#include "cooker/cli/seconds_since.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
 #include "cooker/cli/worker_threads.h"
@@ -37,10 +38,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using How = KeyedOutcome::How;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::uint64_t memory_of(const FarmArguments& farm) {
   if (!farm.memory.empty()) return *byte_size(farm.memory);  // was checked when it was parsed
