@@ -2,13 +2,11 @@
 #include "cooker/cli/cook_arguments.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,6 +14,7 @@
 #include "cooker/cli/standard_streams.h"
 #include "cooker/import/import.h"
 #include "cooker/text/nearest_name.h"
+#include "cooker/text/number_of.h"
 #include "format/codec.h"
 #include "format/grid.h"
 
@@ -27,15 +26,6 @@ std::string ending_fault(const std::string& text) {
   if (is_mesh_ending(text)) return {};
   return fmt::format("expected the ending of a mesh file, as obj, found \"{}\"{}", text,
                      suggestion(text, mesh_endings()));
-}
-
-// All of `text` as a number; nothing if it is none.
-template <class T>
-std::optional<T> number_of(std::string_view text) {
-  T number{};
-  const char* const end = text.data() + text.size();
-  const auto [parsed, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && parsed == end ? std::optional(number) : std::nullopt;
 }
 
 bool is_step_exponent(int exponent) {

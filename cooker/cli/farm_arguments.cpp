@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "cooker/cli/farm_arguments.h"
 
-#include <charconv>
 #include <string_view>
-#include <system_error>
 
 #include <fmt/format.h>
 
 #include "cooker/cli/byte_size.h"
+#include "cooker/text/number_of.h"
 
 namespace boxtree::cooker {
 namespace {
-
-std::optional<std::uint32_t> number_of(std::string_view text) {
-  std::uint32_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && stopped == end ? std::optional(number) : std::nullopt;
-}
 
 std::string shard_fault(const std::string& text) {
   if (shard_from(text)) return {};
@@ -29,8 +21,8 @@ std::string shard_fault(const std::string& text) {
 std::optional<Shard> shard_from(const std::string& text) {
   const std::size_t slash = text.find('/');
   if (slash == std::string::npos) return std::nullopt;
-  const auto number = number_of(std::string_view(text).substr(0, slash));
-  const auto count = number_of(std::string_view(text).substr(slash + 1));
+  const auto number = number_of<std::uint32_t>(std::string_view(text).substr(0, slash));
+  const auto count = number_of<std::uint32_t>(std::string_view(text).substr(slash + 1));
   if (!number || !count || *number >= *count) return std::nullopt;
   return Shard{*number, *count};
 }

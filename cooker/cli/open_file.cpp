@@ -3,7 +3,6 @@
 #include "cooker/cli/open_file.h"
 
 #include <cerrno>
-#include <charconv>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +13,7 @@
 #include "cooker/cli/standard_streams.h"
 #include "cooker/system/input_failure.h"
 #include "cooker/text/nearest_name.h"
+#include "cooker/text/number_of.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -64,10 +64,7 @@ Result<std::uint32_t> find_tree(const File& file, const WhichTree& wanted) {
   const std::string& which = wanted.text;
   const Result<std::uint32_t> named = file.find_tree(which);
   if (named && !wanted.is_number) return named;
-  std::uint32_t index = 0;
-  const char* const end = which.data() + which.size();
-  const auto [parsed, error] = std::from_chars(which.data(), end, index);
-  if (error == std::errc() && parsed == end) return index;
+  if (const auto index = number_of<std::uint32_t>(which)) return *index;
   std::vector<std::string> names;
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
     if (!file.tree_name(i).empty()) names.emplace_back(file.tree_name(i));

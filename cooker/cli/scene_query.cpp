@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "cooker/cli/scene_info.h"
 #include "cooker/cli/shape_answers.h"
 #include "cooker/text/nearest_name.h"
+#include "cooker/text/number_of.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -247,13 +247,6 @@ std::string name_in_move(const std::string& text) {
   return text.substr(0, text.rfind('='));
 }
 
-std::optional<std::uint32_t> number_of_instance(const std::string& name) {
-  std::uint32_t number = 0;
-  const char* const end = name.data() + name.size();
-  const auto [parsed, error] = std::from_chars(name.data(), end, number);
-  return error == std::errc() && parsed == end ? std::optional(number) : std::nullopt;
-}
-
 Result<Move> parse_move(const File& file, const Scene& scene, const std::string& text) {
   const std::size_t at = text.rfind('=');
   const std::string_view numbers =
@@ -268,7 +261,7 @@ Result<Move> parse_move(const File& file, const Scene& scene, const std::string&
   const std::string name = name_in_move(text);
   const Result<std::uint32_t> found = scene.find_instance(name);
   if (found) return Move{name, *found, *pose};
-  const std::optional<std::uint32_t> number = number_of_instance(name);
+  const std::optional<std::uint32_t> number = number_of<std::uint32_t>(name);
   if (!number) return no_instance(file, scene, name);
   if (*number < scene.instance_count()) return Move{name, *number, *pose};
   return Error{Errc::kInstanceIndex, fmt::format("--move {}: expected a number from 0 to {}", name,
@@ -300,7 +293,7 @@ std::vector<std::string> hidden_by_names(const Scene& scene, std::span<const std
           "moves the instance of that number",
           name, count, *first));
     }
-    const std::optional<std::uint32_t> number = number_of_instance(name);
+    const std::optional<std::uint32_t> number = number_of<std::uint32_t>(name);
     if (number && *number != *first && *number < scene.instance_count()) {
       hidden.push_back(
           fmt::format("--move {0}: the instance of that name moves, number {1}, and not number {0}",

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <fcntl.h>
 #include <optional>
 #include <span>
@@ -18,6 +17,7 @@
 
 #include "cooker/system/write_all.h"
 #include "cooker/system/write_failure.h"
+#include "cooker/text/number_of.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -44,10 +44,7 @@ class Count {
     std::array<char, 32> text{};
     const ssize_t got = ::pread(descriptor_, text.data(), text.size(), 0);
     if (got <= 0 || text[static_cast<std::size_t>(got) - 1] != '\n') return std::nullopt;
-    std::uint64_t bytes = 0;
-    const char* const end = text.data() + got - 1;
-    const auto [stopped, error] = std::from_chars(text.data(), end, bytes);
-    return error == std::errc() && stopped == end ? std::optional(bytes) : std::nullopt;
+    return number_of<std::uint64_t>({text.data(), static_cast<std::size_t>(got) - 1});
   }
 
   [[nodiscard]] bool write(std::uint64_t bytes) const {

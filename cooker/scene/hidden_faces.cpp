@@ -3,9 +3,10 @@
 #include "cooker/scene/hidden_faces.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
+
+#include "cooker/text/number_of.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -17,19 +18,12 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-std::optional<std::uint32_t> number_of(std::string_view text) {
-  std::uint32_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || stopped != end) return std::nullopt;
-  return number;
-}
-
 std::optional<FaceRange> range_of(std::string_view text) {
   const std::size_t dash = text.find('-');
-  const auto first = number_of(trimmed(text.substr(0, dash)));
-  const auto last =
-      dash == std::string_view::npos ? first : number_of(trimmed(text.substr(dash + 1)));
+  const auto first = number_of<std::uint32_t>(trimmed(text.substr(0, dash)));
+  const auto last = dash == std::string_view::npos
+                        ? first
+                        : number_of<std::uint32_t>(trimmed(text.substr(dash + 1)));
   if (!first || !last || *last < *first) return std::nullopt;
   return FaceRange{*first, *last};
 }
