@@ -13,9 +13,10 @@
 namespace boxtree::cooker {
 namespace {
 
-class Recursion {
+class LeafRecursion {
  public:
-  Recursion(std::span<FaceBox> faces, std::span<BuildNode> nodes) : faces_(faces), nodes_(nodes) {}
+  LeafRecursion(std::span<FaceBox> faces, std::span<BuildNode> nodes)
+      : faces_(faces), nodes_(nodes) {}
 
   // A set to build: faces [first, last) become the nodes from `node` on, and `roots` children of a
   // wide node. n leaves fill exactly 2n - 1 nodes, so the place of every subtree is known in
@@ -109,7 +110,7 @@ BuildTree build_full_leaves(const MeshView& mesh, Origin origin, const Duplicate
   if (mesh.faces.empty()) return tree;
   std::vector<FaceBox> faces = face_boxes(mesh, tree.frame(), duplicates);
   tree.nodes.resize(2 * leaves_of(faces.size()) - 1);
-  Recursion(faces, tree.nodes).build({0, faces.size(), 0, 1, kMaxSplitDepth});
+  LeafRecursion(faces, tree.nodes).build({0, faces.size(), 0, 1, kMaxSplitDepth});
   tree.order.reserve(faces.size());
   for (const FaceBox& face : faces) tree.order.push_back(face.face);
   return tree;

@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cooker/encode/append.h"
 #include "cooker/encode/encoded.h"
 #include "format/numbers.h"
 
 namespace boxtree::cooker {
 namespace {
-
-template <class T>
-void append(std::vector<std::byte>& out, T value) {
-  const std::size_t end = out.size();
-  out.resize(end + sizeof(T));
-  std::memcpy(out.data() + end, &value, sizeof(T));
-}
 
 // Writes numbers of 1, 2 or 4 bytes.
 void append_number(std::vector<std::byte>& out, std::uint32_t value, std::uint8_t bytes) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/encode/append.h"
 #include "cooker/text/pose_fault.h"
 #include "format/container.h"
 #include "format/instance_edges.h"
@@ -16,12 +17,6 @@
 
 namespace boxtree::cooker {
 namespace {
-
-template <class T>
-void append(std::vector<std::byte>& bytes, const T& value) {
-  const auto* const from = reinterpret_cast<const std::byte*>(&value);
-  bytes.insert(bytes.end(), from, from + sizeof(T));
-}
 
 class SceneEncoder {
  public:

@@ -3,18 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "cooker/encode/append.h"
 #include "cooker/import/face_runs.h"
 
 namespace boxtree::cooker {
-namespace {
-
-template <class T>
-void append(std::vector<std::byte>& bytes, const T& value) {
-  const auto* const from = reinterpret_cast<const std::byte*>(&value);
-  bytes.insert(bytes.end(), from, from + sizeof(T));
-}
-
-}  // namespace
 
 EncodedFaceNumbers encode_face_numbers(const FaceNumbers& numbers, std::uint8_t width) {
   EncodedFaceNumbers out;

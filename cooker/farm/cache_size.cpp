@@ -18,19 +18,18 @@
 #include "cooker/system/write_all.h"
 #include "cooker/system/write_failure.h"
 #include "cooker/text/number_of.h"
+#include "cooker/write/temporary_file.h"
 
 namespace boxtree::cooker {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kMode = 0666;  // less the umask
-
 // The file with the count, locked while this exists.
 class Count {
  public:
   explicit Count(const fs::path& path)
-      : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode)) {}
+      : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kNewFileMode)) {}
   Count(const Count&) = delete;
   Count& operator=(const Count&) = delete;
   ~Count() {

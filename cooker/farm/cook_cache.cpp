@@ -29,7 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxEntryBytes = std::uint64_t{64} << 20;
-constexpr mode_t kMode = 0666;  // less the umask
 // Begins an entry, before the digest of the rest.
 constexpr std::string_view kEntryMagic = "boxtree cache 1 ";
 
@@ -133,7 +132,7 @@ Result<std::optional<CookCache::Entry>> CookCache::fetch(const Digest& key,
 Result<CookCache::Entry> CookCache::store(const Digest& key, const fs::path& output,
                                           const std::string& report) const {
   Entry entry{{}, 0, report};
-  Result<TemporaryFile> copy = TemporaryFile::create(folder_ / "cas", "incoming", kMode);
+  Result<TemporaryFile> copy = TemporaryFile::create(folder_ / "cas", "incoming", kNewFileMode);
   if (!copy) return copy.error();
   Sha256 sha;
   Status written;
@@ -156,7 +155,7 @@ Result<CookCache::Entry> CookCache::store(const Digest& key, const fs::path& out
       {"bytes", entry.bytes},
       {"report", report}}.dump();
   const std::string text = fmt::format("{}{}\n{}", kEntryMagic, hex_of(sha256_of(json)), json);
-  Result<TemporaryFile> file = TemporaryFile::create(folder_ / "ac", "incoming", kMode);
+  Result<TemporaryFile> file = TemporaryFile::create(folder_ / "ac", "incoming", kNewFileMode);
   if (!file) return file.error();
   if (!write_all(file->descriptor(), std::as_bytes(std::span(text)))) {
     return write_failure(entry_path(key), "write");

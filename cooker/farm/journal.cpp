@@ -18,13 +18,12 @@
 #include "cooker/system/write_failure.h"
 #include "cooker/text/json.h"
 #include "cooker/text/percent.h"
+#include "cooker/write/temporary_file.h"
 
 namespace boxtree::cooker {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr mode_t kMode = 0666;  // less the umask
 
 std::optional<Journal::Entry> entry_of(const Json& line) {
   const std::optional<Digest> key = digest_of(text_at(line, "key"));
@@ -37,7 +36,8 @@ std::optional<Journal::Entry> entry_of(const Json& line) {
 }  // namespace
 
 Result<Journal> Journal::open(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, kMode);
+  const int descriptor =
+      ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, kNewFileMode);
   if (descriptor < 0) return write_failure(path, "open");
   Journal journal(path, descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {

@@ -46,10 +46,10 @@ std::array<std::size_t, 3> find_offsets(const PlyLayout& layout) {
 
 // T is the type of the positions.
 template <class T>
-class Reader {
+class BinaryPlyReader {
  public:
-  Reader(SourceStream& stream, const PlyLayout& layout, const std::string& file,
-         IndexedMesh<T>& mesh)
+  BinaryPlyReader(SourceStream& stream, const PlyLayout& layout, const std::string& file,
+                  IndexedMesh<T>& mesh)
       : stream_(stream),
         layout_(layout),
         swapped_((layout.header.form == PlyHeader::Form::kBigEndian) ==
@@ -82,7 +82,7 @@ class Reader {
 };
 
 template <class T>
-Status Reader<T>::read() {
+Status BinaryPlyReader<T>::read() {
   for (const PlyElement& element : layout_.header.elements) {
     // Checked before memory is reserved: the header may state any count.
     const std::size_t least = least_bytes(element);
@@ -105,7 +105,7 @@ Status Reader<T>::read() {
 // Whether what is left is blanks and zero bytes, of which no face can be made: their lists have
 // lengths.
 template <class T>
-bool Reader<T>::is_padding() {
+bool BinaryPlyReader<T>::is_padding() {
   constexpr std::string_view kPadding("\0 \t\r\n\x1a", 6);
   const std::uint64_t left = stream_.left();
   if (left > SourceStream::kBufferBytes) return false;
@@ -116,7 +116,7 @@ bool Reader<T>::is_padding() {
 }
 
 template <class T>
-Status Reader<T>::read_element(const PlyElement& element) {
+Status BinaryPlyReader<T>::read_element(const PlyElement& element) {
   if (&element == layout_.vertex) return read_vertices();
   if (&element == layout_.face) return read_faces();
   if (&element == layout_.tristrips) return read_strips();
@@ -131,7 +131,7 @@ Status Reader<T>::read_element(const PlyElement& element) {
 }
 
 template <class T>
-Status Reader<T>::read_vertices() {
+Status BinaryPlyReader<T>::read_vertices() {
   const std::uint64_t count = layout_.vertex->count;
   if (Status status = mesh_.begin_vertices(count); !status.ok()) return status;
   const std::size_t stride = least_bytes(*layout_.vertex);
@@ -154,7 +154,7 @@ Status Reader<T>::read_vertices() {
 }
 
 template <class T>
-Status Reader<T>::read_faces() {
+Status BinaryPlyReader<T>::read_faces() {
   const std::uint64_t count = layout_.face->count;
   if (Status status = mesh_.reserve_faces(count); !status.ok()) return status;
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -165,7 +165,7 @@ Status Reader<T>::read_faces() {
 }
 
 template <class T>
-Status Reader<T>::read_strips() {
+Status BinaryPlyReader<T>::read_strips() {
   for (std::uint64_t i = 0; i < layout_.tristrips->count; ++i) {
     if (Status status = read_record(*layout_.tristrips, i); !status.ok()) return status;
     if (Status status = mesh_.add_strips(corners_); !status.ok()) return status;
@@ -176,7 +176,7 @@ Status Reader<T>::read_strips() {
 // Reads one record of an element with lists; keeps the corners of a face or strip, user data of a
 // face, and the position of a vertex.
 template <class T>
-Status Reader<T>::read_record(const PlyElement& element, std::uint64_t number) {
+Status BinaryPlyReader<T>::read_record(const PlyElement& element, std::uint64_t number) {
   for (const PlyProperty& property : element.properties) {
     if (property.length) {
       if (Status status = read_list(element, property, number); !status.ok()) return status;
@@ -195,8 +195,8 @@ Status Reader<T>::read_record(const PlyElement& element, std::uint64_t number) {
 }
 
 template <class T>
-Status Reader<T>::read_list(const PlyElement& element, const PlyProperty& list,
-                            std::uint64_t number) {
+Status BinaryPlyReader<T>::read_list(const PlyElement& element, const PlyProperty& list,
+                                     std::uint64_t number) {
   const char* const at = stream_.take(size_of(*list.length));
   if (at == nullptr) return ended_in(element, number);
   const std::int64_t stated = load_ply_integer(at, *list.length, swapped_);
@@ -233,7 +233,7 @@ template <class T>
 Status read_binary_ply(SourceStream& stream, const PlyLayout& layout, const std::string& file,
                        IndexedMesh<T>& mesh) {
   static_cast<void>(stream.take(layout.header.bytes));
-  return Reader<T>(stream, layout, file, mesh).read();
+  return BinaryPlyReader<T>(stream, layout, file, mesh).read();
 }
 
 template Status read_binary_ply(SourceStream&, const PlyLayout&, const std::string&,

@@ -69,11 +69,11 @@ std::optional<std::int64_t> corner_number(std::string_view word) {
 
 // T is the type of the positions.
 template <class T>
-class Reader {
+class ObjReader {
  public:
-  Reader(std::string_view text, const std::string& file, const ImportOptions& options,
-         IndexedMesh<T>& mesh, ImportReport& report, FaceMaterials& materials,
-         FaceMaterials& groups)
+  ObjReader(std::string_view text, const std::string& file, const ImportOptions& options,
+            IndexedMesh<T>& mesh, ImportReport& report, FaceMaterials& materials,
+            FaceMaterials& groups)
       : text_(text),
         file_(file),
         options_(options),
@@ -118,7 +118,7 @@ class Reader {
 };
 
 template <class T>
-Status Reader<T>::read() {
+Status ObjReader<T>::read() {
   for (ObjStatements statements(text_); statements.next(statement_);) {
     if (!statement_.is_vertex()) continue;
     if (Status status = read_vertex(); !status.ok()) return status;
@@ -136,7 +136,7 @@ Status Reader<T>::read() {
 }
 
 template <class T>
-Status Reader<T>::read_vertex() {
+Status ObjReader<T>::read_vertex() {
   split_tokens(joined_text(statement_, joined_), words_);
   words_.erase(words_.begin());
   // A fourth number alone is a weight; more are a colour.
@@ -152,7 +152,7 @@ Status Reader<T>::read_vertex() {
 }
 
 template <class T>
-Status Reader<T>::read_statement() {
+Status ObjReader<T>::read_statement() {
   if (statement_.text.empty()) return {};
   if (statement_.is_vertex()) {
     ++vertices_so_far_;
@@ -185,7 +185,7 @@ Status Reader<T>::read_statement() {
 }
 
 template <class T>
-void Reader<T>::add_unread(std::string_view keyword) {
+void ObjReader<T>::add_unread(std::string_view keyword) {
   std::vector<Unread>& unread = report_.unread;
   const auto is_same = [&keyword](const Unread& each) { return each.what == keyword; };
   auto known = std::find_if(unread.begin(), unread.end(), is_same);
@@ -200,7 +200,7 @@ void Reader<T>::add_unread(std::string_view keyword) {
 }
 
 template <class T>
-Status Reader<T>::read_element() {
+Status ObjReader<T>::read_element() {
   const bool is_face = statement_.text[0] == 'f';  // f or fo
   split_tokens(joined_text(statement_, joined_), words_);
   if (is_face) {
@@ -214,7 +214,7 @@ Status Reader<T>::read_element() {
 }
 
 template <class T>
-Status Reader<T>::read_face() {
+Status ObjReader<T>::read_face() {
   if (words_.size() < 3 && is_cut()) {
     report_.has_half_face = true;
     return {};
@@ -237,13 +237,13 @@ Status Reader<T>::read_face() {
 
 // Whether the current statement reaches the end of a text whose last line has no end.
 template <class T>
-bool Reader<T>::is_cut() const {
+bool ObjReader<T>::is_cut() const {
   return report_.has_open_end &&
          statement_.text.data() + statement_.text.size() == text_.data() + text_.size();
 }
 
 template <class T>
-std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
+std::optional<std::uint32_t> ObjReader<T>::vertex_of(std::string_view word) const {
   const std::int64_t number = corner_number(word).value_or(0);
   const auto so_far = static_cast<std::int64_t>(vertices_so_far_);
   if (number > 0 && number <= static_cast<std::int64_t>(mesh_.vertices())) {
@@ -255,7 +255,7 @@ std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
 
 // The fault of a corner that refers to no vertex. Its word is quoted, since we count from 0.
 template <class T>
-FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
+FaceFault ObjReader<T>::fault_of(std::string_view word, std::size_t corner) const {
   const std::optional<std::int64_t> number = corner_number(word);
   const std::string fault =
       !number       ? "which is no number of a vertex"
@@ -309,7 +309,7 @@ Status import_obj(const SourceFile& source, const ImportOptions& options, Import
   const auto read = [&]<class T>(std::string_view text, const std::string& file,
                                  std::vector<T>& positions) {
     IndexedMesh<T> mesh(file, options, positions, out);
-    Reader<T> reader(statements_of(text), file, options, mesh, out.report, materials, groups);
+    ObjReader<T> reader(statements_of(text), file, options, mesh, out.report, materials, groups);
     Status status = reader.read();
     libraries = reader.libraries();
     return status;

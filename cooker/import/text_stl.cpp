@@ -23,9 +23,9 @@ constexpr std::size_t kShown = kStlHeaderBytes;
 
 // T is the type of the positions.
 template <class T>
-class Reader {
+class TextStlReader {
  public:
-  Reader(std::string_view text, const std::string& file, StlMesh<T>& mesh)
+  TextStlReader(std::string_view text, const std::string& file, StlMesh<T>& mesh)
       : rest_(text), file_(file), mesh_(mesh) {}
 
   Status read() {
@@ -129,7 +129,7 @@ bool is_text_stl(std::string_view start) {
 
 template <class T>
 Status read_text_stl(std::string_view text, const std::string& file, StlMesh<T>& mesh) {
-  return Reader<T>(text, file, mesh).read();
+  return TextStlReader<T>(text, file, mesh).read();
 }
 
 template Status read_text_stl(std::string_view, const std::string&, StlMesh<float>&);

@@ -18,8 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kMode = 0666;  // restricted by the umask
-constexpr mode_t kModeBits = 07777;
+constexpr mode_t kNewFileModeBits = 07777;
 
 // Errors of file systems, old kernels and sandboxes that cannot exchange names, and the error if
 // the old file no longer exists.
@@ -45,13 +44,13 @@ Result<AtomicFile> AtomicFile::create_beside(const fs::path& given) {
   if (!target->has_filename()) return Error{Errc::kWriteFailed, "a file without a name"};
   const fs::path directory = folder_of(*target);
   Result<TemporaryFile> temporary =
-      TemporaryFile::create(directory, target->filename().string(), kMode);
+      TemporaryFile::create(directory, target->filename().string(), kNewFileMode);
   if (!temporary) return temporary.error();
   AtomicFile file(std::move(*temporary), *target, exists);
   // Needed after the rename, when it is too late to fail.
   file.directory_ = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file.directory_ < 0) return write_failure(given, "cannot open its directory");
-  if (exists && ::fchmod(file.descriptor(), old.st_mode & kModeBits) != 0) {
+  if (exists && ::fchmod(file.descriptor(), old.st_mode & kNewFileModeBits) != 0) {
     return write_failure(given, "cannot keep its mode");
   }
   // Only root may set owners.

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kMode = 0666;  // without a meaning: rights are those of the folder
-
 Error windows_failure(const fs::path& path, const char* what) {
   const auto reason = static_cast<int>(::GetLastError());
   return {Errc::kWriteFailed,
@@ -47,7 +45,7 @@ Result<AtomicFile> AtomicFile::create_beside(const fs::path& given) {
   }
   if (!target->has_filename()) return Error{Errc::kWriteFailed, "a file without a name"};
   Result<TemporaryFile> temporary =
-      TemporaryFile::create(folder_of(*target), target->filename().string(), kMode);
+      TemporaryFile::create(folder_of(*target), target->filename().string(), kNewFileMode);
   if (!temporary) return temporary.error();
   return AtomicFile(std::move(*temporary), *target, exists);
 }

@@ -12,6 +12,10 @@
 
 namespace boxtree::cooker {
 
+/// Of new files that others may use; the umask takes from it. (Windows gives them the rights of
+/// their folder.)
+inline constexpr mode_t kNewFileMode = 0666;
+
 /// An open file in a folder. If the file system supports it (O_TMPFILE), the file has no name until
 /// add_name(), so that a killed process leaves nothing behind. Otherwise, and while it has a name,
 /// it is called ".NAME.RANDOM.cooking", and the next TemporaryFile with the same folder and name
