@@ -50,6 +50,22 @@ double per_point(const Tree& tree, const std::vector<Eigen::Vector3d>& points, s
   return seconds / static_cast<double>(points.size());
 }
 
+// And of shapes: `overlap_all(results)`.
+template <class OverlapAll>
+double per_shape(std::size_t count, std::size_t runs, Status& status,
+                 const OverlapAll& overlap_all) {
+  if (count == 0) return 0;
+  std::vector<VisitResult> results(count);
+  const double seconds = median_seconds(runs, [&] {
+    const Status visited = overlap_all(results);
+    if (!visited && status.ok()) status = visited;
+  });
+  for (const VisitResult& result : results) {
+    if (!result.ok() && status.ok()) status = result.error();
+  }
+  return seconds / static_cast<double>(count);
+}
+
 }  // namespace
 
 double clock_cost_ns() {
@@ -94,6 +110,10 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
                            })
             .code();
       });
+  figures.box_batch_ns = 1e9 * per_shape(workload.boxes.size(), runs, status, [&](auto& results) {
+                           return overlap_boxes(tree, workload.boxes, results,
+                                                [](std::size_t, const FaceRef&) { return true; });
+                         });
   figures.point_ns =
       1e9 * per_query(workload.points, runs, status, [&](const Eigen::Vector3d& point) {
         const auto closest = closest_point(tree, point);
@@ -106,6 +126,19 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
         return closest_point(tree, point).code();
       });
   figures.lattice_batch_ns = 1e9 * per_point(tree, workload.lattice, runs, status);
+  std::vector<Sphere> balls;
+  balls.reserve(workload.lattice.size());
+  for (const Eigen::Vector3d& center : workload.lattice)
+    balls.push_back({center, workload.cast_radius});
+  figures.ball_ns =
+      1e9 * per_query(balls, runs, status, [&](const Sphere& ball) {
+        return overlap_sphere(tree, ball, [](const FaceRef&) { return false; }).code();
+      });
+  figures.ball_batch_ns =
+      1e9 * per_shape(balls.size(), runs, status, [&](auto& results) {
+        return overlap_spheres(tree, balls, results,
+                               [](std::size_t, const FaceRef&) { return false; });
+      });
   const Pose here = Pose::Identity();
   figures.pair_first_us = 1e6 * per_query(workload.poses, runs, status, [&](const Pose& pose) {
                             const auto contact = first_contact(tree, here, tree, pose);

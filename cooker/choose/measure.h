@@ -84,10 +84,13 @@ struct QueryFigures {
   double camera_batch_ns = 0;
   double cast_sphere_ns = 0;
   double box_ns = 0;
+  double box_batch_ns = 0;  // the same boxes by overlap_boxes()
   double point_ns = 0;
   double point_batch_ns = 0;  // the same points by closest_points()
   double lattice_ns = 0;
   double lattice_batch_ns = 0;
+  double ball_ns = 0;  // whether spheres around the lattice touch
+  double ball_batch_ns = 0;
   double pair_first_us = 0;
   double pair_all_us = 0;
   std::uint64_t ray_hits = 0;

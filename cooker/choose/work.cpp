@@ -73,7 +73,7 @@ Errc run_query(const BoundTree& tree, const Eigen::AlignedBox3d& box, Counts& co
   const BoxQuery shape{tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())};
   const auto go_on = [](const FaceRef&) { return true; };
   WalkBound nodes(tree.node_count());
-  Listening query{FaceWalk<BoxQuery>{tree, shape, go_on, nodes}, &counts};
+  Listening query{FaceWalk<BoxQuery>{{tree, go_on}, shape, nodes}, &counts};
   const Errc walked = traverse_overlap(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }

@@ -59,10 +59,13 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
               {"camera_batch_ns", figures->camera_batch_ns},
               {"cast_sphere_ns", figures->cast_sphere_ns},
               {"box_ns", figures->box_ns},
+              {"box_batch_ns", figures->box_batch_ns},
               {"point_ns", figures->point_ns},
               {"point_batch_ns", figures->point_batch_ns},
               {"lattice_ns", figures->lattice_ns},
               {"lattice_batch_ns", figures->lattice_batch_ns},
+              {"ball_ns", figures->ball_ns},
+              {"ball_batch_ns", figures->ball_batch_ns},
               {"pair_first_us", figures->pair_first_us},
               {"pair_all_us", figures->pair_all_us},
               {"open_us", open->first_answer_us},
@@ -142,7 +145,8 @@ void print_row(const Json& row) {
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
   fmt::print(
       "  measured means; spheres with a radius of 1 % of the diagonal are cast along the rays;\n"
-      "  boxes are {};\n  contacts are those with {};\n  view is {};\n  near is {}\n",
+      "  boxes are {};\n  contacts are those with {};\n  view is {};\n  near is {};\n"
+      "  ball is whether a sphere of that radius around each of them touches anything\n",
       kBoxMeaning, kPoseMeaning, kCameraMeaning, kLatticeMeaning);
   const auto number = [&](const char* key) { return row[key].get<double>(); };
   const auto of = [&](const char* key, const char* word) {
@@ -154,11 +158,14 @@ void print_row(const Json& row) {
              of("camera_hits", "hit"), number("camera_batch_ns"));
   fmt::print("  cast  {:9.0f} ns  {} of spheres\n", number("cast_sphere_ns"),
              of("cast_sphere_hits", "hit"));
-  fmt::print("  box   {:9.0f} ns  {}\n", number("box_ns"), of("box_faces", "face"));
+  fmt::print("  box   {:9.0f} ns  {}, in batches {:.0f} ns\n", number("box_ns"),
+             of("box_faces", "face"), number("box_batch_ns"));
   fmt::print("  point {:9.0f} ns  {:.6g} summed distance, in batches {:.0f} ns\n",
              number("point_ns"), number("point_distance"), number("point_batch_ns"));
   fmt::print("  near  {:9.0f} ns  in batches {:.0f} ns\n", number("lattice_ns"),
              number("lattice_batch_ns"));
+  fmt::print("  ball  {:9.0f} ns  in batches {:.0f} ns\n", number("ball_ns"),
+             number("ball_batch_ns"));
   fmt::print("  first {:9.1f} us  {}\n", number("pair_first_us"), of("pair_hits", "contact"));
   fmt::print("  all   {:9.1f} us  {}\n", number("pair_all_us"), of("pair_pairs", "pair"));
   fmt::print(

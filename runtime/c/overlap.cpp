@@ -6,6 +6,7 @@
 
 #include <boxtree/boxtree.h>
 
+#include "runtime/c/batch.h"
 #include "runtime/c/call.h"
 #include "runtime/c/convert.h"
 #include "runtime/c/handle.h"
@@ -46,6 +47,60 @@ bxt_status visit_in_box(const Handle* subject, const bxt_vec3* min, const bxt_ve
   return visit_faces<Handle>(visitor, context, limits, error, [&](auto visit, auto... read) {
     return overlap_box(subject->inside, box_of(*min, *max), visit, read...);
   });
+}
+
+// Calls overlap_all(begin, shapes, results, visitor, limits...), the batch of a tree or of a scene,
+// with shapes some at a time.
+template <class Handle, class ShapeAt, class OverlapAll>
+bxt_status visit_batch(const Handle* subject, std::size_t count, const ShapeAt& shape_at,
+                       bxt_batch_face_visitor visitor, void* context, const bxt_limits* limits,
+                       bxt_status* statuses, bxt_error* error, const OverlapAll& overlap_all) {
+  if (visitor == nullptr) return refuse(error, "visitor");
+  return guarded(error, [&] {
+    return with_limits<Handle>(limits, error, [&](auto... read) {
+      BatchStatuses written(statuses, error);
+      answer_in_chunks<VisitResult>(
+          count, shape_at,
+          [&](std::size_t begin, auto shapes, auto results) {
+            const auto visit = [&](std::size_t i, const auto& face) {
+              const bxt_face shown = to_c(face);
+              return visitor(context, begin + i, &shown);
+            };
+            return overlap_all(subject->inside, shapes, results, visit, read...);
+          },
+          [&](std::size_t i, const VisitResult& end) { written.write(i, end); });
+      return written.first_error();
+    });
+  });
+}
+
+template <class Handle>
+bxt_status visit_in_boxes(const Handle* subject, const bxt_vec3* mins, const bxt_vec3* maxs,
+                          std::size_t count, bxt_batch_face_visitor visitor, void* context,
+                          const bxt_limits* limits, bxt_status* statuses, bxt_error* error) {
+  if (subject == nullptr) return refuse(error, "tree or scene");
+  if (count == 0) return BXT_OK;
+  if (const char* name = first_null("mins", mins, "maxs", maxs)) return refuse(error, name);
+  return visit_batch(
+      subject, count, [&](std::size_t i) { return box_of(mins[i], maxs[i]); }, visitor, context,
+      limits, statuses, error,
+      [](const auto&... arguments) { return overlap_boxes(arguments...); });
+}
+
+template <class Handle>
+bxt_status visit_in_spheres(const Handle* subject, const bxt_vec3* centers, const double* radii,
+                            std::size_t count, bxt_batch_face_visitor visitor, void* context,
+                            const bxt_limits* limits, bxt_status* statuses, bxt_error* error) {
+  if (subject == nullptr) return refuse(error, "tree or scene");
+  if (count == 0) return BXT_OK;
+  if (const char* name = first_null("centers", centers, "radii", radii)) return refuse(error, name);
+  return visit_batch(
+      subject, count,
+      [&](std::size_t i) {
+        return Sphere{to_cpp(centers[i]), radii[i]};
+      },
+      visitor, context, limits, statuses, error,
+      [](const auto&... arguments) { return overlap_spheres(arguments...); });
 }
 
 // The queries of all shapes under one name.
@@ -118,6 +173,21 @@ bxt_status bxt_tree_overlap_box(const bxt_tree* tree, const bxt_vec3* min, const
   return visit_in_box(tree, min, max, visitor, context, limits, error);
 }
 
+bxt_status bxt_tree_overlap_boxes(const bxt_tree* tree, const bxt_vec3* mins, const bxt_vec3* maxs,
+                                  size_t count, bxt_batch_face_visitor visitor, void* context,
+                                  const bxt_limits* limits, bxt_status* statuses,
+                                  bxt_error* error) {
+  return visit_in_boxes(tree, mins, maxs, count, visitor, context, limits, statuses, error);
+}
+
+bxt_status bxt_tree_overlap_spheres(const bxt_tree* tree, const bxt_vec3* centers,
+                                    const double* radii, size_t count,
+                                    bxt_batch_face_visitor visitor, void* context,
+                                    const bxt_limits* limits, bxt_status* statuses,
+                                    bxt_error* error) {
+  return visit_in_spheres(tree, centers, radii, count, visitor, context, limits, statuses, error);
+}
+
 bxt_status bxt_tree_overlap(const bxt_tree* tree, const bxt_shape* shape, bxt_face_visitor visitor,
                             void* context, const bxt_limits* limits, bxt_error* error) {
   return visit_in_shape(tree, shape, visitor, context, limits, error);
@@ -170,6 +240,22 @@ bxt_status bxt_scene_overlap_box(const bxt_scene* scene, const bxt_vec3* min, co
                                  bxt_face_visitor visitor, void* context, const bxt_limits* limits,
                                  bxt_error* error) {
   return visit_in_box(scene, min, max, visitor, context, limits, error);
+}
+
+bxt_status bxt_scene_overlap_boxes(const bxt_scene* scene, const bxt_vec3* mins,
+                                   const bxt_vec3* maxs, size_t count,
+                                   bxt_batch_face_visitor visitor, void* context,
+                                   const bxt_limits* limits, bxt_status* statuses,
+                                   bxt_error* error) {
+  return visit_in_boxes(scene, mins, maxs, count, visitor, context, limits, statuses, error);
+}
+
+bxt_status bxt_scene_overlap_spheres(const bxt_scene* scene, const bxt_vec3* centers,
+                                     const double* radii, size_t count,
+                                     bxt_batch_face_visitor visitor, void* context,
+                                     const bxt_limits* limits, bxt_status* statuses,
+                                     bxt_error* error) {
+  return visit_in_spheres(scene, centers, radii, count, visitor, context, limits, statuses, error);
 }
 
 bxt_status bxt_scene_overlap(const bxt_scene* scene, const bxt_shape* shape,

@@ -62,8 +62,8 @@ bxt_status nearest_points(const Handle* subject, const bxt_vec3* points, std::si
       };
       if constexpr (std::is_same_v<Handle, bxt_tree>) {
         answer_in_chunks<PointResult>(
-            points, count,
-            [&](auto chunk, auto results) {
+            count, [&](std::size_t i) { return to_cpp(points[i]); },
+            [&](std::size_t, auto chunk, auto results) {
               return closest_points(subject->inside, chunk, results, max_distance, read...);
             },
             write);

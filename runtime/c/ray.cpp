@@ -154,8 +154,10 @@ bxt_status many_hits(const Handle* subject, const bxt_ray* rays, std::size_t cou
       };
       if constexpr (std::is_same_v<Handle, bxt_tree>) {
         answer_in_chunks<RayResult>(
-            rays, count,
-            [&](auto chunk, auto results) { return many(subject->inside, chunk, results, read); },
+            count, [&](std::size_t i) { return to_cpp(rays[i]); },
+            [&](std::size_t, auto chunk, auto results) {
+              return many(subject->inside, chunk, results, read);
+            },
             write);
       } else {
         // A scene answers rays one by one, be there a batch or not.

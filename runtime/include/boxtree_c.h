@@ -71,7 +71,7 @@ extern "C" {
 
 /// The version of this interface: major * 65536 + minor. Programs run with a library of the same
 /// major version whose minor version is theirs or higher.
-#define BXT_ABI_VERSION 0x10001u
+#define BXT_ABI_VERSION 0x10002u
 
 /// BXT_ABI_VERSION of the library that is linked.
 BXT_API uint32_t bxt_abi_version(void);
@@ -585,8 +585,26 @@ BXT_API bxt_status bxt_tree_any_hits(const bxt_tree* tree, const bxt_ray* rays, 
 BXT_API bxt_status bxt_tree_overlap_box(const bxt_tree* tree, const bxt_vec3* min,
                                         const bxt_vec3* max, bxt_face_visitor visitor,
                                         void* context, const bxt_limits* limits, bxt_error* error);
-/// The same of a shape. Faces are touched, not solids: a shape inside a mesh touches nothing. A
-/// hull takes up to 200 KB of stack.
+/// Receives the number of a shape in its batch and a face that touches it; returns whether to go on
+/// with this shape. Faces of other shapes may come in between.
+typedef bool (*bxt_batch_face_visitor)(void* context, size_t number, const bxt_face* face);
+/// Visits the faces that touch one of the `count` boxes from `mins[i]` to `maxs[i]`, for each box
+/// those that bxt_tree_overlap_box() visits, in the same order: in less time, the more so the
+/// nearer consecutive boxes are to each other. `statuses`: of each box, or null; returns the first
+/// error of a box, all others are visited all the same. Takes up to 160 KB of stack.
+BXT_API bxt_status bxt_tree_overlap_boxes(const bxt_tree* tree, const bxt_vec3* mins,
+                                          const bxt_vec3* maxs, size_t count,
+                                          bxt_batch_face_visitor visitor, void* context,
+                                          const bxt_limits* limits, bxt_status* statuses,
+                                          bxt_error* error);
+/// The same of spheres around `centers[i]` with radius `radii[i]`.
+BXT_API bxt_status bxt_tree_overlap_spheres(const bxt_tree* tree, const bxt_vec3* centers,
+                                            const double* radii, size_t count,
+                                            bxt_batch_face_visitor visitor, void* context,
+                                            const bxt_limits* limits, bxt_status* statuses,
+                                            bxt_error* error);
+/// As bxt_tree_overlap_box() of a shape. Faces are touched, not solids: a shape inside a mesh
+/// touches nothing. A hull takes up to 200 KB of stack.
 BXT_API bxt_status bxt_tree_overlap(const bxt_tree* tree, const bxt_shape* shape,
                                     bxt_face_visitor visitor, void* context,
                                     const bxt_limits* limits, bxt_error* error);
@@ -651,9 +669,9 @@ typedef struct bxt_closest_point {
 BXT_API bxt_status bxt_tree_closest_point(const bxt_tree* tree, const bxt_vec3* point,
                                           double max_distance, const bxt_limits* limits,
                                           bxt_closest_point* answer, bxt_error* error);
-/// The nearest point to each of `count` points, to the bit what bxt_tree_closest_point() says of it,
-/// in less time, the more so the nearer consecutive points are to each other. An error of a point
-/// leaves its answer empty; otherwise as bxt_tree_closest_hits().
+/// The nearest point to each of `count` points, to the bit what bxt_tree_closest_point() says of
+/// it, in less time, the more so the nearer consecutive points are to each other. An error of a
+/// point leaves its answer empty; otherwise as bxt_tree_closest_hits().
 BXT_API bxt_status bxt_tree_closest_points(const bxt_tree* tree, const bxt_vec3* points,
                                            size_t count, double max_distance,
                                            const bxt_limits* limits, bxt_closest_point* answers,
@@ -1010,6 +1028,18 @@ BXT_API bxt_status bxt_scene_any_hits(const bxt_scene* scene, const bxt_ray* ray
 BXT_API bxt_status bxt_scene_overlap_box(const bxt_scene* scene, const bxt_vec3* min,
                                          const bxt_vec3* max, bxt_face_visitor visitor,
                                          void* context, const bxt_limits* limits, bxt_error* error);
+/// As bxt_tree_overlap_boxes(), in the time of one by one.
+BXT_API bxt_status bxt_scene_overlap_boxes(const bxt_scene* scene, const bxt_vec3* mins,
+                                           const bxt_vec3* maxs, size_t count,
+                                           bxt_batch_face_visitor visitor, void* context,
+                                           const bxt_limits* limits, bxt_status* statuses,
+                                           bxt_error* error);
+/// As bxt_tree_overlap_spheres(), in the time of one by one.
+BXT_API bxt_status bxt_scene_overlap_spheres(const bxt_scene* scene, const bxt_vec3* centers,
+                                             const double* radii, size_t count,
+                                             bxt_batch_face_visitor visitor, void* context,
+                                             const bxt_limits* limits, bxt_status* statuses,
+                                             bxt_error* error);
 /// As bxt_tree_overlap().
 BXT_API bxt_status bxt_scene_overlap(const bxt_scene* scene, const bxt_shape* shape,
                                      bxt_face_visitor visitor, void* context,

@@ -8,16 +8,24 @@
 #include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
+
+QueriedShape<BoxQuery> in_tree_space(const BoundTree& tree,
+                                     const Eigen::AlignedBox3d& box) noexcept {
+  if (!is_finite_box(box)) return {"box", {}};
+  const auto clamped = [&](const Eigen::Vector3d& corner) -> Eigen::Vector3d {
+    return tree.frame().to_tree(corner).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
+  };
+  return {nullptr, {clamped(box.min()), clamped(box.max())}};
+}
+
 Result<Visit> overlap_box(const Tree& queried, const Eigen::AlignedBox3d& box, FaceVisitor visitor,
                           const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
-  if (!is_finite_box(box)) return invalid_query("box");
-  const BoxQuery query{
-      tree.frame().to_tree(box.min()).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate),
-      tree.frame().to_tree(box.max()).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate)};
+  const QueriedShape<BoxQuery> query = in_tree_space(tree, box);
+  if (query.invalid != nullptr) return invalid_query(query.invalid);
   QueryWork work(limits);
-  return visit_faces(tree, query, visitor, work);
+  return visit_faces(tree, query.shape, visitor, work);
 }
 
 }  // namespace boxtree

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Box queries over the wide codecs.
-#include "runtime/primitive/rounding.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/erased_codec.h"
 #include "runtime/walk/targets.h"
@@ -12,7 +11,7 @@
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include "runtime/walk/box_bounds-inl.h"
+#include "runtime/query/box_filter-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
@@ -23,27 +22,6 @@ Errc walk_box(const BoundTree& tree, FaceWalk<BoxQuery>& faces) {
   return traverse_overlap(tree, ErasedCodec{&tree}, faces);
 }
 #else
-class BoxFilter {
- public:
-  // Decoded boxes are exact; triangles were rounded to float.
-  BoxFilter(const BoundTree& tree, const BoxQuery& query) {
-    const double error =
-        tree.largest_abs() * 2 * kRoundoffF32 + double{std::numeric_limits<float>::min()};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      bounds_.set(k, query.low[axis], query.high[axis], error);
-    }
-  }
-
-  HWY_INLINE Classification classify(const VectorBox& box) const { return bounds_.classify(box); }
-  HWY_INLINE Classification classify(const VectorTriangle& triangle) const {
-    return classify_corners(bounds_, triangle);
-  }
-
- private:
-  BoxBounds bounds_;
-};
-
 Errc walk_box(const BoundTree& tree, FaceWalk<BoxQuery>& faces) {
   return with_wide_codec<Errc>(
       tree, [&](const auto& codec) { return walk<BoxFilter>(tree, codec, faces); });

@@ -124,7 +124,7 @@ Result<Visit> overlap_frustum(const Tree& queried, const Frustum& frustum, FaceV
   }
   QueryWork work(limits);
   WalkBound nodes(tree.node_count(), &work);
-  FaceWalk<FrustumQuery> walk{tree, query, visitor, nodes};
+  FaceWalk<FrustumQuery> walk{{tree, visitor}, query, nodes};
   return outcome_of(traverse_overlap(tree, ErasedCodec{&tree}, walk), walk);
 }
 

@@ -95,19 +95,20 @@ class PointPacket {
   [[nodiscard]] const Box<float>& root() const { return root_; }
 
   // Walks the tree for each point by itself.
-  HWY_NOINLINE void walk_alone() {
-    for (PointSet rest = points_; rest != 0; rest &= rest - 1) {
-      batch_.answer_alone(first_ + static_cast<std::size_t>(std::countr_zero(rest)));
-    }
+  HWY_NOINLINE void walk_alone(std::size_t first, std::size_t count) {
+    for (std::size_t i = first; i < first + count; ++i) batch_.answer_alone(i);
   }
 
   // Every point's answer, once the walk is over. `walked`: its error, which any of them may have
   // come upon.
   HWY_NOINLINE void answer(Errc walked) {
-    if (walked != Errc::kOk) return walk_alone();
     witness_count_ = 0;
     for (PointSet rest = points_; rest != 0; rest &= rest - 1) {
       const auto p = static_cast<std::uint32_t>(std::countr_zero(rest));
+      if (walked != Errc::kOk) {
+        batch_.answer_alone(first_ + p);
+        continue;
+      }
       note_witness(*queries_[p]);
       batch_.answer(first_ + p, *queries_[p]);
     }

@@ -3,8 +3,11 @@
 // triangles, both in tree space; and what receives the faces.
 #pragma once
 
+#include <boxtree/shape.h>
+
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/query/point_filter.h"
 #include "runtime/query/relative_pose.h"
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/face_visit.h"
@@ -65,6 +68,26 @@ struct SphereQuery {
     return squared_length(closest_point_on_triangle(center, triangle) - center) <= squared_radius;
   }
 };
+
+/// A shape of a caller in tree space.
+template <class Shape>
+struct QueriedShape {
+  const char* invalid = nullptr;  ///< The argument that is not valid; then there is no shape.
+  Shape shape{};
+};
+[[nodiscard]] QueriedShape<BoxQuery> in_tree_space(const BoundTree& tree,
+                                                   const Eigen::AlignedBox3d& box) noexcept;
+[[nodiscard]] QueriedShape<SphereQuery> in_tree_space(const BoundTree& tree,
+                                                      const Sphere& sphere) noexcept;
+
+/// Whether single precision resolves the parts of a tree from a shape, so that it is worth a walk
+/// by vectors.
+[[nodiscard]] inline bool is_near(const BoundTree& /*tree*/, const BoxQuery& /*box*/) noexcept {
+  return true;
+}
+[[nodiscard]] inline bool is_near(const BoundTree& tree, const SphereQuery& sphere) noexcept {
+  return PointFilter::is_near(tree.largest_abs(), sphere.center);
+}
 
 /// By vectors; see walk_tree.h.
 Errc walk_wide(const BoundTree& tree, FaceWalk<BoxQuery>& walk);

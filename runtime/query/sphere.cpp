@@ -17,17 +17,23 @@ Result<Visit> visit_sphere(const BoundTree& tree, const SphereQuery& sphere, Fac
   return visit_faces(tree, sphere, visitor, work);
 }
 
+QueriedShape<SphereQuery> in_tree_space(const BoundTree& tree, const Sphere& sphere) noexcept {
+  const Eigen::Vector3d center = tree.frame().to_tree(sphere.center);
+  if (!is_within_range(center)) return {"center", {}};
+  if (!(sphere.radius >= 0) || !std::isfinite(sphere.radius)) return {"radius", {}};
+  // Twice kMaxCoordinate spans every distance that can occur; a larger radius changes no answer.
+  const double radius = std::min(sphere.radius * tree.frame().inverse_scale, 4 * kMaxCoordinate);
+  return {nullptr, {center, radius * radius}};
+}
+
 Result<Visit> overlap_sphere(const Tree& queried, const Eigen::Vector3d& center, double radius,
                              FaceVisitor visitor, const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
-  const Eigen::Vector3d tree_center = tree.frame().to_tree(center);
-  if (!is_within_range(tree_center)) return invalid_query("center");
-  if (!(radius >= 0) || !std::isfinite(radius)) return invalid_query("radius");
-  // Twice kMaxCoordinate spans every distance that can occur; a larger radius changes no answer.
-  const double tree_radius = std::min(radius * tree.frame().inverse_scale, 4 * kMaxCoordinate);
+  const QueriedShape<SphereQuery> query = in_tree_space(tree, Sphere{center, radius});
+  if (query.invalid != nullptr) return invalid_query(query.invalid);
   QueryWork work(limits);
-  return visit_sphere(tree, SphereQuery{tree_center, tree_radius * tree_radius}, visitor, work);
+  return visit_sphere(tree, query.shape, visitor, work);
 }
 
 }  // namespace boxtree

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Sphere queries over the wide codecs.
-#include "runtime/query/point_filter.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/erased_codec.h"
 #include "runtime/walk/targets.h"
@@ -12,8 +11,7 @@
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include "runtime/query/distance-inl.h"
-#include "runtime/walk/overlap-inl.h"
+#include "runtime/query/sphere_filter-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
@@ -24,31 +22,6 @@ Errc walk_sphere(const BoundTree& tree, FaceWalk<SphereQuery>& faces) {
   return traverse_overlap(tree, ErasedCodec{&tree}, faces);
 }
 #else
-class SphereFilter {
- public:
-  SphereFilter(const BoundTree& tree, const SphereQuery& query)
-      : center_(tree.largest_abs(), query.center),
-        above_(PointFilter::above(query.squared_radius)),
-        below_(PointFilter::below(query.certain_squared_radius)) {}
-
-  HWY_INLINE Classification classify(const VectorBox& box) const {
-    const Floats d;
-    return {bits_of(hn::Le(nearest_squared(center_, box), hn::Set(d, above_))),
-            bits_of(hn::Le(farthest_squared(center_, box), hn::Set(d, below_)))};
-  }
-
-  HWY_INLINE Classification classify(const VectorTriangle& triangle) const {
-    return classify_corners(*this, triangle);
-  }
-  HWY_INLINE std::uint32_t contained(const VectorPoint& point) const {
-    return bits_of(hn::Le(farthest_squared(center_, box_at(point)), hn::Set(Floats(), below_)));
-  }
-
- private:
-  PointFilter center_;
-  float above_, below_;  // squared radius
-};
-
 Errc walk_sphere(const BoundTree& tree, FaceWalk<SphereQuery>& faces) {
   return with_wide_codec<Errc>(
       tree, [&](const auto& codec) { return walk<SphereFilter>(tree, codec, faces); });
@@ -70,7 +43,7 @@ BOXTREE_EXPORT(walk_sphere);
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, FaceWalk<SphereQuery>& walk) {
-  if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_abs(), walk.shape.center)) {
+  if (tree.has_float_nodes() && is_near(tree, walk.shape)) {
     return BOXTREE_DISPATCH(walk_sphere)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);

@@ -147,7 +147,7 @@ Result<Visit> overlap_frustum(const Scene& scene, const Frustum& frustum, SceneF
         const PlacedFrustum placed_frustum{in_tree(units, placed), widened(units, largest),
                                            to_world};
         WalkBound nodes(tree.node_count(), &work);
-        FaceWalk<PlacedFrustum> walk{tree, placed_frustum, {visitor, instance}, nodes};
+        FaceWalk<PlacedFrustum> walk{{tree, {visitor, instance}}, placed_frustum, nodes};
         return outcome_of(traverse_overlap(tree, ErasedCodec{&tree}, walk), walk);
       });
 }

@@ -4,12 +4,14 @@
 
 #include <boxtree/scene.h>
 #include <boxtree/scene_closest_batch.h>
+#include <boxtree/scene_overlap_batch.h>
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/point_query.h"
 #include "runtime/query/shape_query.h"
+#include "runtime/query/visit_result.h"
 #include "runtime/scene/answer_each.h"
 #include "runtime/scene/placed_box.h"
 #include "runtime/scene/scene_walk.h"
@@ -38,11 +40,11 @@ struct ShapeInScene : InstanceOutcome {
 };
 
 template <class Shape>
-Result<Visit> query_scene(const BoundScene& scene, const Shape& shape, SceneFaceVisitor visitor,
-                          LayerMask layers, const QueryLimits& limits) {
+VisitResult query_scene(const BoundScene& scene, const Shape& shape, SceneFaceVisitor visitor,
+                        LayerMask layers, const QueryLimits& limits) {
   QueryWork work(limits);
   ShapeInScene<Shape> query{{}, {scene, kBoxQueries, layers, work}, shape, visitor};
-  return outcome_of(visit_overlapping_instances(scene, query), query);
+  return visit_result(outcome_of(visit_overlapping_instances(scene, query), query));
 }
 
 // Boxes are compared in the world itself: only signs count, and units could lose the last bits of
@@ -152,14 +154,12 @@ struct PointInScene {
   }
 };
 
-}  // namespace
-
-Result<Visit> overlap_box(const Scene& queried, const Eigen::AlignedBox3d& box,
-                          SceneFaceVisitor visitor, LayerMask layers, const QueryLimits& limits) {
+VisitResult visit_box(const Scene& queried, const Eigen::AlignedBox3d& box,
+                      SceneFaceVisitor visitor, LayerMask layers, const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
-  if (!is_finite_box(box)) return invalid_query("box");
+  if (!is_finite_box(box)) return {Errc::kInvalidQuery, "box"};
   // No instance extends farther.
   const auto clamped = [](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
     const Eigen::Vector3d a = low.cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
@@ -172,19 +172,59 @@ Result<Visit> overlap_box(const Scene& queried, const Eigen::AlignedBox3d& box,
   return query_scene(scene, shape, visitor, layers, limits);
 }
 
-Result<Visit> overlap_sphere(const Scene& queried, const Eigen::Vector3d& center, double radius,
-                             SceneFaceVisitor visitor, LayerMask layers,
-                             const QueryLimits& limits) {
+VisitResult visit_sphere(const Scene& queried, const Sphere& sphere, SceneFaceVisitor visitor,
+                         LayerMask layers, const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
-  const Eigen::Vector3d at = scene.to_units(center);
-  const double length = scene.to_units(radius);
-  if (!is_within_range(at)) return invalid_query("center");
-  if (!(length >= 0) || !(length <= kMaxCoordinate)) return invalid_query("radius");
+  const Eigen::Vector3d at = scene.to_units(sphere.center);
+  const double length = scene.to_units(sphere.radius);
+  if (!is_within_range(at)) return {Errc::kInvalidQuery, "center"};
+  if (!(length >= 0) || !(length <= kMaxCoordinate)) return {Errc::kInvalidQuery, "radius"};
   const SphereInUnits shape{at, length, scene.to_frame(at),
                             frame_bound(length, frame_error(scene, largest_magnitude(at)))};
   return query_scene(scene, shape, visitor, layers, limits);
+}
+
+// Calls `visit(shape, visitor)` for each of a batch.
+template <class Shape, class VisitShape>
+Status visit_each(std::span<const Shape> shapes, std::span<VisitResult> results,
+                  SceneBatchFaceVisitor visitor, const VisitShape& visit) {
+  std::size_t number = 0;
+  const auto faces = [&](const SceneFace& face) { return visitor(number, face); };
+  return answer_each(shapes, results, [&](const Shape& shape) {
+    number = static_cast<std::size_t>(&shape - shapes.data());
+    return visit(shape, faces);
+  });
+}
+
+}  // namespace
+
+Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
+                          SceneFaceVisitor visitor, LayerMask layers, const QueryLimits& limits) {
+  return as_result(visit_box(scene, box, visitor, layers, limits));
+}
+
+Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, double radius,
+                             SceneFaceVisitor visitor, LayerMask layers,
+                             const QueryLimits& limits) {
+  return as_result(visit_sphere(scene, {center, radius}, visitor, layers, limits));
+}
+
+Status overlap_boxes(const Scene& scene, std::span<const Eigen::AlignedBox3d> boxes,
+                     std::span<VisitResult> results, SceneBatchFaceVisitor visitor,
+                     LayerMask layers, const QueryLimits& limits) {
+  return visit_each(boxes, results, visitor, [&](const auto& box, SceneFaceVisitor faces) {
+    return visit_box(scene, box, faces, layers, limits);
+  });
+}
+
+Status overlap_spheres(const Scene& scene, std::span<const Sphere> spheres,
+                       std::span<VisitResult> results, SceneBatchFaceVisitor visitor,
+                       LayerMask layers, const QueryLimits& limits) {
+  return visit_each(spheres, results, visitor, [&](const auto& sphere, SceneFaceVisitor faces) {
+    return visit_sphere(scene, sphere, faces, layers, limits);
+  });
 }
 
 ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& point,

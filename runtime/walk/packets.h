@@ -39,20 +39,21 @@ class SharedWalks {
 };
 
 /// Answers a batch of `count` queries. What it needs of a packet:
-/// packet.take(first, count): prepares queries of the batch, at most Packet::kMost.
-/// packet.all() -> those that a walk has to answer.
-/// packet.walk_alone(), packet.answer(error of the walk).
-/// And of `walk`, of the packet through the tree: run() -> Errc, was_shared() -> bool.
+/// packet.walk_alone(first, count): answers queries of the batch, at most Packet::kMost, one by
+/// one. packet.take(first, count): prepares so many; packet.all() -> those that a walk has to
+/// answer. packet.answer(error of the walk). And of `walk`, of the packet through the tree: run()
+/// -> Errc, was_shared() -> bool.
 template <class Packet, class Walk>
 void answer_in_packets(std::size_t count, Packet& packet, Walk& walk, bool always_alone = false) {
   SharedWalks walks;
   for (std::size_t first = 0; first < count; first += Packet::kMost) {
-    packet.take(first, std::min<std::size_t>(count - first, Packet::kMost));
-    if (packet.all() == 0) continue;
+    const std::size_t taken = std::min<std::size_t>(count - first, Packet::kMost);
     if (always_alone || walks.is_alone()) {
-      packet.walk_alone();
+      packet.walk_alone(first, taken);
       continue;
     }
+    packet.take(first, taken);
+    if (packet.all() == 0) continue;
     packet.answer(walk.run());
     walks.note(walk.was_shared());
   }

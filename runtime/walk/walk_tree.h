@@ -91,7 +91,7 @@ template <class Shape>
 Result<Visit> visit_faces(const BoundTree& tree, const Shape& shape,
                           typename Shape::Visitor visitor, QueryWork& work) {
   WalkBound nodes(tree.node_count(), &work);
-  FaceWalk<Shape> walk{tree, shape, visitor, nodes};
+  FaceWalk<Shape> walk{{tree, visitor}, shape, nodes};
   return outcome_of(walk_overlap(tree, walk), walk);
 }
 

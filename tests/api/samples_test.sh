@@ -90,6 +90,14 @@ diff <(grep -v '^between' closest_point.out) - <<'END'
 distance 2 to face 0
 within 1.5: nothing
 END
+# Twelve balls of radius 0.125 from (0, 0, 1.5) straight to (3, 0, 0): the eighth and ninth are within it of the upper plate, those
+# after them of the lower one, the last of the floor alone.
+prints overlap_batch level.bxt <<'END'
+link 0: ---
+link 1: ---
+link 2: -pp
+link 3: ppf
+END
 # At x = -2 to 2, 0.5, 1.5 and 2.5 high: over the floor, then over the plates at 0.25 and 0.5; within 1.25.
 prints point_batch level.bxt <<'END'
  0.50    -    -

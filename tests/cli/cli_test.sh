@@ -1172,9 +1172,10 @@ same "$(awk '$1 ~ /^(ray|cast|box|first|all)$/ { printf "%s%s", separator, $4; s
 same "$(awk '$1 ~ /^(ray|cast|box|point|first|all|open)$/ && $2 > 0 { printf "%s %s ", $1, $3 }' out)" \
   'ray ns cast ns box ns point ns first us all us open us '
 bench_says "^  ray +[0-9]+ ns  [0-9]+ hits, in batches [0-9]+ ns$"
-bench_says "^  box +[0-9]+ ns  [0-9]+ faces$"
+bench_says "^  box +[0-9]+ ns  [0-9]+ faces, in batches [0-9]+ ns$"
 bench_says "^  point +[0-9]+ ns  [0-9.e+]+ summed distance, in batches [0-9]+ ns$"
 bench_says "^  near +[0-9]+ ns  in batches [0-9]+ ns$"
+bench_says "^  ball +[0-9]+ ns  in batches [0-9]+ ns$"
 bench_says "^  first +[0-9.]+ us  [0-9]+ contacts$"
 bench_says "^  all +[0-9.]+ us  [0-9]+ pairs$"
 bench_says "^  open +[0-9.]+ us  to the first answer, of which opening and binding take [0-9.]+ us; [0-9]+ page faults?$"

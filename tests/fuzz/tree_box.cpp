@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Boxes against the tree of any file, all faces and as far as it matters.
+// Boxes against the tree of any file, all faces, as far as it matters, and those of batches.
+#include "tests/fuzz/overlap_batch.h"
 #include "tests/fuzz/tree_target.h"
 
 namespace boxtree::fuzz {
@@ -20,6 +21,19 @@ void run(Bytes input) {
     // Who is sure of a hit has one.
     if (all && within && within->overlap == Overlap::kOverlapping && faces == 0) {
       finding("overlap_box_within is hit by a box that overlap_box is not");
+    }
+    if (query.option(1) % 4 < 2) {
+      visit_many(
+          query, check,
+          [&](const Eigen::Vector3d& offset) {
+            return Eigen::AlignedBox3d(box.min() + offset, box.max() + offset);
+          },
+          [&](auto shapes, auto results, auto visitor, const QueryLimits& limits) {
+            return overlap_boxes(tree, shapes, results, visitor, limits);
+          },
+          [&](const Eigen::AlignedBox3d& moved, auto visitor, const QueryLimits& limits) {
+            return overlap_box(tree, moved, visitor, limits);
+          });
     }
   });
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Spheres against the tree of any file.
+// Spheres against the tree of any file, and those of batches.
+#include "tests/fuzz/overlap_batch.h"
 #include "tests/fuzz/tree_target.h"
 
 namespace boxtree::fuzz {
@@ -11,6 +12,19 @@ void run(Bytes input) {
     check(overlap_sphere(
         tree, query.vector(0), query.number(3), [&](const FaceRef&) { return ++faces < most; },
         query.limits()));
+    if (query.option(1) % 4 == 0) {
+      visit_many(
+          query, check,
+          [&](const Eigen::Vector3d& offset) {
+            return Sphere{query.vector(0) + offset, query.number(3)};
+          },
+          [&](auto shapes, auto results, auto visitor, const QueryLimits& limits) {
+            return overlap_spheres(tree, shapes, results, visitor, limits);
+          },
+          [&](const Sphere& sphere, auto visitor, const QueryLimits& limits) {
+            return overlap_sphere(tree, sphere, visitor, limits);
+          });
+    }
   });
 }
 

@@ -57,6 +57,20 @@ Outcome outcome_of_batch(const Tree& tree, const Eigen::Vector3d& point,
       closest_points(tree, points, results, std::numeric_limits<double>::infinity(), limits);
   return status.ok() ? outcome(results.back(), length_of) : Outcome{status.error().code, 0};
 }
+// And of a shape: the number of visitor calls for the last.
+template <class Shape, class Batch>
+Outcome outcome_of_shapes(const Shape& shape, const Batch& batch) {
+  std::array<Shape, 20> shapes;
+  shapes.fill(shape);
+  std::array<VisitResult, 20> results;
+  std::size_t told = 0;
+  const Status status = batch(shapes, results, [&](std::size_t i, const FaceRef&) {
+    told += i + 1 == shapes.size() ? 1 : 0;
+    return true;
+  });
+  if (!status.ok()) return {status.error().code, 0};
+  return outcome(results.back(), [&](Visit) { return told; });
+}
 double t_of(const CastHit& hit) {
   return hit.t;
 }
@@ -187,6 +201,19 @@ std::vector<TreeQuery> tree_queries(const QuerySet& q) {
          return outcome_of_visit([&](FaceVisitor visitor) {
            return overlap_sphere(tree, q.point, q.radius, visitor, limits);
          });
+       }},
+      {"overlap_boxes", 96, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_shapes(q.box, [&](const auto& shapes, auto& results, auto visitor) {
+           return overlap_boxes(tree, shapes, results, visitor, limits);
+         });
+       }},
+      {"overlap_spheres", 96, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_shapes(Sphere{q.point, q.radius},
+                                  [&](const auto& shapes, auto& results, auto visitor) {
+                                    return overlap_spheres(tree, shapes, results, visitor, limits);
+                                  });
        }},
       {"closest_point", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {

@@ -18,6 +18,7 @@
 #if BOXTREE_HAS_BOX_QUERIES || BOXTREE_HAS_SPHERE_QUERIES || BOXTREE_HAS_FRUSTUM_QUERIES || \
     BOXTREE_HAS_WITHIN_QUERIES
 #include <boxtree/overlap.h>
+#include <boxtree/overlap_batch.h>
 #endif
 #if BOXTREE_HAS_POINT_QUERIES
 #include <boxtree/closest.h>
@@ -34,6 +35,7 @@
 #if BOXTREE_HAS_SCENE_QUERIES
 #include <boxtree/scene.h>
 #include <boxtree/scene_closest_batch.h>
+#include <boxtree/scene_overlap_batch.h>
 #include <boxtree/scene_ray_batch.h>
 #if BOXTREE_HAS_CAST_QUERIES
 #include <boxtree/scene_cast.h>

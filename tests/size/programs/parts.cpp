@@ -25,7 +25,8 @@ enum Parts : unsigned {
   kScene = 8192,
   kRayBatch = 16384,
   kPointBatch = 32768,
-  kAll = 65535
+  kShapeBatch = 65536,
+  kAll = 131071
 };
 #ifndef PARTS
 #define PARTS kAll
@@ -107,6 +108,14 @@ bool query(const World& world) {
   if constexpr (has(kPointBatch) && std::is_same_v<World, Tree>) {
     boxtree::PointResult results[4];
     all = all && closest_points(world, kPoints, results).ok();
+  }
+  if constexpr (has(kShapeBatch) && std::is_same_v<World, Tree>) {
+    constexpr auto kGoOnWithAll = [](std::size_t, const boxtree::FaceRef&) { return true; };
+    boxtree::VisitResult results[4];
+    const boxtree::Sphere spheres[4] = {};
+    const Eigen::AlignedBox3d boxes[4];
+    all = all && overlap_boxes(world, boxes, results, kGoOnWithAll).ok() &&
+          overlap_spheres(world, spheres, results, kGoOnWithAll).ok();
   }
   return all;
 }

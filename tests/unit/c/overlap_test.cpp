@@ -28,12 +28,16 @@ struct Overlaps;
 template <>
 struct Overlaps<bxt_tree> {
   static constexpr auto box = bxt_tree_overlap_box;
+  static constexpr auto boxes = bxt_tree_overlap_boxes;
+  static constexpr auto spheres = bxt_tree_overlap_spheres;
   static constexpr auto shape = bxt_tree_overlap;
   static constexpr auto frustum = bxt_tree_overlap_frustum;
 };
 template <>
 struct Overlaps<bxt_scene> {
   static constexpr auto box = bxt_scene_overlap_box;
+  static constexpr auto boxes = bxt_scene_overlap_boxes;
+  static constexpr auto spheres = bxt_scene_overlap_spheres;
   static constexpr auto shape = bxt_scene_overlap;
   static constexpr auto frustum = bxt_scene_overlap_frustum;
 };
@@ -86,6 +90,84 @@ TEST(COverlaps, OfBoxesAreThoseOfCpp) {
       }
     });
     EXPECT_GT(found, 50u);
+  });
+}
+
+// What a batch of C visits: of each shape, and how it ended.
+struct BatchOfC {
+  explicit BatchOfC(std::size_t count) : found(count), statuses(count + 1, -3) {
+    error.struct_size = sizeof error;
+  }
+
+  // Of shapes with odd numbers all faces, of the others three.
+  static bool keep(void* context, std::size_t number, const bxt_face* face) {
+    std::vector<Numbers>& faces = static_cast<BatchOfC*>(context)->found[number];
+    faces.push_back(numbers_of(*face));
+    return number % 2 == 1 || faces.size() < 3;
+  }
+
+  std::vector<std::vector<Numbers>> found;
+  std::vector<bxt_status> statuses;
+  bxt_error error = {};
+};
+
+// Each shape visits what it visits alone, the message is that of the first error: `alone(i,
+// visitor, context, error)`.
+template <class Alone>
+void expect_as_alone(const BatchOfC& batch, bxt_status status, const Alone& alone) {
+  bxt_status first_status = BXT_OK;
+  bxt_error first = {};
+  first.struct_size = sizeof first;
+  for (std::size_t i = 0; i < batch.found.size(); ++i) {
+    SCOPED_TRACE(i);
+    std::vector<Numbers> found;
+    const bxt_status expected = alone(i, i % 2 == 1 ? &keep<bxt_face> : &keep_three<bxt_face>,
+                                      &found, first_status == BXT_OK ? &first : nullptr);
+    if (first_status == BXT_OK) first_status = expected;
+    ASSERT_EQ(batch.statuses[i], expected);
+    ASSERT_EQ(batch.found[i], found);
+  }
+  ASSERT_EQ(status, first_status);
+  if (status != BXT_OK) {
+    EXPECT_STREQ(batch.error.message, first.message);
+  }
+  EXPECT_EQ(batch.statuses.back(), -3) << "written behind the last one";
+}
+
+TEST(COverlaps, OfABatchAreThoseOfShapesAlone) {
+  test::for_each_subject([](const auto& subject, const auto* c_subject) {
+    using Functions = FunctionsOf<decltype(c_subject)>;
+    test::Randoms randoms(subject);
+    for (const std::size_t count : {0u, 1u, 70u, 200u}) {
+      std::vector<bxt_vec3> mins, maxs;
+      std::vector<double> radii;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3d a = randoms.point(1.2), b = randoms.point(1.2);
+        mins.push_back(test::vec3(a.cwiseMin(b)));
+        maxs.push_back(test::vec3(a.cwiseMax(b)));
+        radii.push_back(i % 50 == 41 ? -1 : 0.25 * (a - b).norm());
+        if (i % 50 == 37) mins.back().y = NAN;
+      }
+      test::for_each_limits(subject, [&](const bxt_limits* c, const auto&...) {
+        BatchOfC boxes(count);
+        const bxt_status of_boxes =
+            Functions::boxes(c_subject, mins.data(), maxs.data(), count, &BatchOfC::keep, &boxes, c,
+                             boxes.statuses.data(), &boxes.error);
+        expect_as_alone(
+            boxes, of_boxes, [&](std::size_t i, auto visitor, void* context, bxt_error* error) {
+              return Functions::box(c_subject, &mins[i], &maxs[i], visitor, context, c, error);
+            });
+        BatchOfC spheres(count);
+        const bxt_status of_spheres =
+            Functions::spheres(c_subject, mins.data(), radii.data(), count, &BatchOfC::keep,
+                               &spheres, c, spheres.statuses.data(), &spheres.error);
+        expect_as_alone(spheres, of_spheres,
+                        [&](std::size_t i, auto visitor, void* context, bxt_error* error) {
+                          const bxt_shape sphere = bxt_sphere(mins[i], radii[i]);
+                          return Functions::shape(c_subject, &sphere, visitor, context, c, error);
+                        });
+      });
+    }
   });
 }
 

@@ -92,6 +92,33 @@ struct CQuery {
       return query(&told);
     };
   };
+  static constexpr bxt_batch_face_visitor kNumbered = [](void*, std::size_t, const bxt_face*) {
+    return true;
+  };
+  // Less their own arrays of 100 shapes: 4 KB and more.
+  const auto many_boxes = [=](auto function, auto* subject) {
+    return [=] {
+      std::array<bxt_vec3, 100> mins, maxs;
+      for (std::size_t i = 0; i < mins.size(); ++i) {
+        const double way = 0.01 * static_cast<double>(i);
+        mins[i] = {min.x + way, min.y, min.z};
+        maxs[i] = {max.x + way, max.y, max.z};
+      }
+      return function(subject, mins.data(), maxs.data(), mins.size(), kNumbered, nullptr, nullptr,
+                      nullptr, nullptr);
+    };
+  };
+  const auto many_spheres = [=](auto function, auto* subject) {
+    return [=] {
+      std::array<bxt_vec3, 100> centers;
+      std::array<double, 100> radii;
+      radii.fill(size);
+      for (std::size_t i = 0; i < centers.size(); ++i)
+        centers[i] = {center.x + 0.01 * static_cast<double>(i), center.y, center.z};
+      return function(subject, centers.data(), radii.data(), centers.size(), kNumbered, nullptr,
+                      nullptr, nullptr, nullptr);
+    };
+  };
   const auto batch = [=](auto function, auto* subject, const bxt_face_options& given) {
     return [=] {
       std::array<bxt_ray, 100> rays;
@@ -124,6 +151,8 @@ struct CQuery {
       {"tree any_hits", 160 + 26, batch(bxt_tree_any_hits, tree, options)},
       {"tree overlap_box", 64,
        [=] { return bxt_tree_overlap_box(tree, &min, &max, kFaces, nullptr, nullptr, nullptr); }},
+      {"tree overlap_boxes", 160 + 5, many_boxes(bxt_tree_overlap_boxes, tree)},
+      {"tree overlap_spheres", 160 + 4, many_spheres(bxt_tree_overlap_spheres, tree)},
       {"tree overlap", 64,
        [=] { return bxt_tree_overlap(tree, &ball, kFaces, nullptr, nullptr, nullptr); }},
       {"tree overlap of a hull", 200,
@@ -215,6 +244,9 @@ struct CQuery {
       {"scene any_hits", 64 + 26, batch(bxt_scene_any_hits, scene, of_scene)},
       {"scene overlap_box", 64,
        [=] { return bxt_scene_overlap_box(scene, &min, &max, kFaces, nullptr, nullptr, nullptr); }},
+      // Less chunks of 64 shapes and results.
+      {"scene overlap_boxes", 64 + 10, many_boxes(bxt_scene_overlap_boxes, scene)},
+      {"scene overlap_spheres", 64 + 10, many_spheres(bxt_scene_overlap_spheres, scene)},
       {"scene overlap", 64,
        [=] { return bxt_scene_overlap(scene, &ball, kFaces, nullptr, nullptr, nullptr); }},
       {"scene overlap of a hull", 200,

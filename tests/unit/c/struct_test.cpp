@@ -360,6 +360,8 @@ void expect_refused_null(std::size_t which, const std::string& name,
 
 TEST_F(CArguments, ThatAreNullAreRefused) {
   const auto face_visitor = [](void*, const bxt_face*) { return true; };
+  const auto batch_visitor = [](void*, std::size_t, const bxt_face*) { return true; };
+  const double radius = 1;
   const auto pair_visitor = [](void*, const bxt_face*, const bxt_face*) { return true; };
   const auto pair_contact_visitor = [](void*, const bxt_pair_contact*) { return true; };
   const auto contact_visitor = [](void*, const bxt_contact*) { return true; };
@@ -404,6 +406,12 @@ TEST_F(CArguments, ThatAreNullAreRefused) {
                     &hit, nullptr, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "min"}, {2, "max"}, {3, "visitor"}), bxt_tree_overlap_box,
                     tree, &min_, &max_, face_visitor, nullptr, nullptr);
+  EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "mins"}, {2, "maxs"}, {4, "visitor"}),
+                    bxt_tree_overlap_boxes, tree, &min_, &max_, 1, batch_visitor, nullptr, nullptr,
+                    nullptr);
+  EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "centers"}, {2, "radii"}, {4, "visitor"}),
+                    bxt_tree_overlap_spheres, tree, &min_, &radius, 1, batch_visitor, nullptr,
+                    nullptr, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "shape"}, {2, "visitor"}), bxt_tree_overlap, tree, &shape,
                     face_visitor, nullptr, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "tree"}, {1, "planes"}, {2, "visitor"}), bxt_tree_overlap_frustum,
@@ -457,6 +465,12 @@ TEST_F(CArguments, ThatAreNullAreRefused) {
                     1, &hit, nullptr, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "min"}, {2, "max"}, {3, "visitor"}),
                     bxt_scene_overlap_box, scene, &min_, &max_, face_visitor, nullptr, nullptr);
+  EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "mins"}, {2, "maxs"}, {4, "visitor"}),
+                    bxt_scene_overlap_boxes, scene, &min_, &max_, 1, batch_visitor, nullptr,
+                    nullptr, nullptr);
+  EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "centers"}, {2, "radii"}, {4, "visitor"}),
+                    bxt_scene_overlap_spheres, scene, &min_, &radius, 1, batch_visitor, nullptr,
+                    nullptr, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "shape"}, {2, "visitor"}), bxt_scene_overlap, scene,
                     &shape, face_visitor, nullptr, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "planes"}, {2, "visitor"}), bxt_scene_overlap_frustum,

@@ -124,6 +124,72 @@ TEST_P(SceneQueries, BatchesAnswerEachRayAsAlone) {
   EXPECT_EQ(any_hits(scene_, rays, few).error().detail, "results.size()");
 }
 
+TEST_P(SceneQueries, BatchesVisitForEachShapeWhatItVisitsAlone) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector3d at = point();
+    boxes.emplace_back(at - Eigen::Vector3d::Constant(0.3), at + Eigen::Vector3d(0.1, 0.7, 0.2));
+    spheres.push_back({at, 0.4});
+  }
+  boxes[7].min().x() = std::numeric_limits<double>::quiet_NaN();
+  spheres[8].radius = -1;
+  // Of even shapes two faces at most.
+  using Faces = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  const auto keep = [](Faces& faces, std::size_t i, const SceneFace& face) {
+    faces.emplace_back(face.instance, face.face.index);
+    return i % 2 == 1 || faces.size() < 2;
+  };
+  std::size_t found = 0;
+  for (const LayerMask layers : {kAllLayers, LayerMask{1}}) {
+    for (const QueryLimits& limits : {QueryLimits(), QueryLimits{20}}) {
+      const auto expect_as_alone = [&](const auto& shapes, const auto& visit_all,
+                                       const auto& visit) {
+        std::vector<Faces> faces(shapes.size());
+        std::vector<VisitResult> results(shapes.size());
+        ASSERT_TRUE(visit_all(shapes, results, [&](std::size_t i, const SceneFace& face) {
+                      return keep(faces[i], i, face);
+                    }).ok());
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+          SCOPED_TRACE(i);
+          Faces alone;
+          const Result<Visit> end =
+              visit(shapes[i], [&](const SceneFace& face) { return keep(alone, i, face); });
+          EXPECT_EQ(faces[i], alone);
+          ASSERT_EQ(results[i].code(), end.code());
+          if (end) {
+            EXPECT_EQ(*results[i], *end);
+          } else {
+            EXPECT_EQ(results[i].error().detail, end.error().detail);
+          }
+          found += alone.size();
+        }
+      };
+      expect_as_alone(
+          boxes,
+          [&](const auto& shapes, auto& results, const auto& visitor) {
+            return overlap_boxes(scene_, shapes, results, visitor, layers, limits);
+          },
+          [&](const Eigen::AlignedBox3d& box, const auto& visitor) {
+            return overlap_box(scene_, box, visitor, layers, limits);
+          });
+      expect_as_alone(
+          spheres,
+          [&](const auto& shapes, auto& results, const auto& visitor) {
+            return overlap_spheres(scene_, shapes, results, visitor, layers, limits);
+          },
+          [&](const Sphere& sphere, const auto& visitor) {
+            return overlap_sphere(scene_, sphere, visitor, layers, limits);
+          });
+    }
+  }
+  EXPECT_GT(found, 100u);
+  std::vector<VisitResult> results(3);
+  const auto visitor = [](std::size_t, const SceneFace&) { return true; };
+  EXPECT_EQ(overlap_boxes(scene_, boxes, results, visitor).error().detail, "results.size()");
+  EXPECT_EQ(overlap_spheres(scene_, spheres, results, visitor).error().detail, "results.size()");
+}
+
 TEST_P(SceneQueries, BatchesAnswerEachPointAsAlone) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 100; ++i) points.push_back(point());
