@@ -36,6 +36,10 @@ Error error_at(std::string_view place, const Error& error) {
   return placed;
 }
 
+Error error_of(std::string_view what, std::uint64_t number, const Error& error) {
+  return error_at(error_with(error.code, what, " #: ", {number}).detail, error);
+}
+
 Error index_error(Errc code, std::string_view what, std::uint64_t index, std::uint64_t count) {
   Error error = error_with(code, "there is no ", what);
   const std::string_view expected = count == 0   ? " #, nor any other"

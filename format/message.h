@@ -19,6 +19,9 @@ namespace boxtree {
 /// The error, its detail after `place`.
 [[nodiscard]] Error error_at(std::string_view place, const Error& error);
 
+/// The error, its detail after "tree 2: ", of what is called `what`.
+[[nodiscard]] Error error_of(std::string_view what, std::uint64_t number, const Error& error);
+
 /// "there is no tree 2; expected 0 or 1", of `count` things called `what`.
 /// Precondition: index >= count.
 [[nodiscard]] Error index_error(Errc code, std::string_view what, std::uint64_t index,

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <string_view>
 
 #include "format/codec_wide.h"
 #include "format/limits.h"
@@ -80,34 +80,40 @@ bool geometry_fits(const TreeRecord& record) {
           is_within(std::int64_t{record.grid_exponent} - record.scale_exponent, kMaxGridShift));
 }
 
-}  // namespace
-
-Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
-  const std::string place = "tree " + std::to_string(std::uint64_t{tree}) + ": ";
+Status check_fields(const TreeRecord& record) {
   if (codec_name(record.codec) == "unknown") {
-    return error_with(Errc::kCodecUnsupported, place, "codec #",
+    return error_with(Errc::kCodecUnsupported, {}, "codec #",
                       {static_cast<std::uint64_t>(record.codec)});
   }
   if (geometry_name(record.geometry) == "unknown") {
-    return error_with(Errc::kGeometryUnsupported, place, "geometry #",
+    return error_with(Errc::kGeometryUnsupported, {}, "geometry #",
                       {static_cast<std::uint64_t>(record.geometry)});
   }
   // Unknown flags may change the meaning of the fields below.
   if ((record.flags & ~kTreeKnownFlags) != 0) {
-    return error_with(Errc::kFeatureUnsupported, place, "flags #; this reader knows those of #",
+    return error_with(Errc::kFeatureUnsupported, {}, "flags #; this reader knows those of #",
                       {record.flags, kTreeKnownFlags});
   }
-  const auto invalid = [&](const char* what) {
-    return error_with(Errc::kRecordInvalid, place, what);
-  };
+  std::string_view fault;
   if (!counts_fit(record) || !leaves_fit(record) || !duplicates_fit(record)) {
-    return invalid("counts contradict each other or exceed the limits");
+    fault = "counts contradict each other or exceed the limits";
+  } else if (!root_fits(record)) {
+    fault = "kind of root contradicts the counts";
+  } else if (!frame_fits(record)) {
+    fault = "origin, scale or root box is not finite, ordered and within limits";
+  } else if (!geometry_fits(record)) {
+    fault = "corners, grid or its error are not as specified";
+  } else {
+    return {};
   }
-  if (!root_fits(record)) return invalid("kind of root contradicts the counts");
-  if (!frame_fits(record))
-    return invalid("origin, scale or root box is not finite, ordered and within limits");
-  if (!geometry_fits(record)) return invalid("corners, grid or its error are not as specified");
-  return {};
+  return error_with(Errc::kRecordInvalid, {}, fault);
+}
+
+}  // namespace
+
+Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
+  Status status = check_fields(record);
+  return status ? status : error_of("tree", tree, status.error());
 }
 
 }  // namespace boxtree

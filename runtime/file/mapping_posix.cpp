@@ -13,6 +13,7 @@
 #include <unistd.h>
 #include <utility>
 
+#include "format/message.h"
 #include "runtime/file/mapping.h"
 #include "runtime/file/read_failure.h"
 
@@ -36,8 +37,9 @@ class Descriptor {
 };
 
 Error system_error(Errc code, const std::string& path, int number) {
-  return Error{number == ENOMEM ? Errc::kOutOfMemory : code,
-               path + ": " + std::generic_category().message(number)};
+  return error_at(
+      error_with(code, path, ": ").detail,
+      {number == ENOMEM ? Errc::kOutOfMemory : code, std::generic_category().message(number)});
 }
 
 // Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.
@@ -46,10 +48,10 @@ Result<std::size_t> regular_file_size(int file, const std::string& path) {
   struct stat info {};
   if (::fstat(file, &info) != 0) return read_failure(path, errno);
   if (!S_ISREG(info.st_mode)) {
-    return Error{Errc::kFileUnreadable, path + ": not a regular file"};
+    return error_with(Errc::kFileUnreadable, path, ": not a regular file");
   }
   if (static_cast<std::uintmax_t>(info.st_size) > std::numeric_limits<std::size_t>::max()) {
-    return Error{Errc::kOutOfMemory, path + ": too large for the memory of a 32-bit program"};
+    return error_with(Errc::kOutOfMemory, path, ": too large for the memory of a 32-bit program");
   }
   return static_cast<std::size_t>(info.st_size);
 }
@@ -106,13 +108,13 @@ Result<Mapping> Mapping::copy(const std::string& path) {
   if (!size) return size.error();
   if (*size == 0) return Mapping();
   Result<WritableMapping> copied = WritableMapping::allocate(*size);
-  if (!copied) return Error{copied.code(), path + ": " + copied.error().detail};
+  if (!copied) return error_at(error_with(copied.code(), path, ": ").detail, copied.error());
   std::byte* const data = copied->bytes().data();
   for (std::size_t done = 0; done < *size;) {
     const ssize_t got = ::pread(file.value(), data + done, *size - done, static_cast<off_t>(done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return read_failure(path, errno);
-    if (got == 0) return Error{Errc::kFileUnreadable, path + ": shrank while being read"};
+    if (got == 0) return error_with(Errc::kFileUnreadable, path, ": shrank while being read");
     done += static_cast<std::size_t>(got);
   }
   return std::move(*copied).finish();
@@ -122,7 +124,7 @@ Result<WritableMapping> WritableMapping::allocate(std::size_t size) {
   if (size == 0) return WritableMapping(nullptr, 0);
   void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (data == MAP_FAILED) {
-    return Error{Errc::kOutOfMemory, "no memory for " + std::to_string(size) + " bytes"};
+    return error_with(Errc::kOutOfMemory, {}, "no memory for # bytes", {size});
   }
   return WritableMapping(static_cast<std::byte*>(data), size);
 }

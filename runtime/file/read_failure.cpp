@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "format/message.h"
+
 namespace boxtree {
 namespace {
 
@@ -19,18 +21,19 @@ bool begins_at_root(const std::string& path) {
 
 Error read_failure(const std::string& path, int reason, const std::string& named_in) {
   if (reason == ENOENT || reason == ENOTDIR) {
-    const std::string missing = path + ": no such file; ";
     if (!named_in.empty()) {
-      return {Errc::kFileNotFound,
-              missing + "names in " + named_in + " are relative to its folder"};
+      return error_at(error_with(Errc::kFileNotFound, path, ": no such file; names in ").detail,
+                      error_with(Errc::kFileNotFound, named_in, " are relative to its folder"));
     }
-    const bool is_relative = !begins_at_root(path);
-    return {Errc::kFileNotFound,
-            missing + "check the name" +
-                (is_relative ? ", which is relative to the current folder" : "")};
+    return error_with(Errc::kFileNotFound, path,
+                      begins_at_root(path)
+                          ? ": no such file; check the name"
+                          : ": no such file; check the name, which is relative to the current "
+                            "folder");
   }
-  return {reason == ENOMEM ? Errc::kOutOfMemory : Errc::kFileUnreadable,
-          path + ": " + std::generic_category().message(reason)};
+  return error_at(error_with(Errc::kOk, path, ": ").detail,
+                  {reason == ENOMEM ? Errc::kOutOfMemory : Errc::kFileUnreadable,
+                   std::generic_category().message(reason)});
 }
 
 }  // namespace boxtree

@@ -19,7 +19,7 @@ constexpr std::uint64_t kMostNameBytes = 0xffff;  // of an instance, that Instan
 constexpr std::uint64_t kMostTextBytes = 1 << 30;
 
 Error of_instance(std::size_t number, const Error& error) {
-  return error_at(error_with(error.code, {}, "instance #: ", {number}).detail, error);
+  return error_of("instance", number, error);
 }
 
 Status check(const PlacedTree& instance, std::size_t tree_count) {
