@@ -343,7 +343,11 @@ class Cook {
       place_trees();
       if (Status status = find_edges_between(); !status) return status;
     }
-    if (options_.cook_record) file_.record = make_cook_record(options_, input_, profile_);
+    if (options_.cook_record) {
+      file_.record = make_cook_record(options_, input_, profile_);
+    } else if (!input_.has_top_level && file_.trees.size() == 1) {
+      file_.trees.front().name.clear();  // the source's, and there is no other tree to tell it from
+    }
     return {};
   }
 

@@ -22,7 +22,9 @@ namespace boxtree::cooker {
 
 struct CookOptions : SearchOptions {
   std::optional<BlobMethod> blob;  // compress the whole file; queries need it decompressed
-  bool cook_record = true;  // tool version, options and source hashes, for people and build systems
+  /// Tool version, options and source hashes, for people and build systems. Without it a tree alone
+  /// has no name, which is that of its source, so that the source's name changes no byte.
+  bool cook_record = true;
   /// [false] Number the faces of the tree by its own order, for a mesh that is written in that
   /// order (reorder/reordered_mesh.h). The file then needs no face ids: FaceRef::id and
   /// FaceRef::index are the same. For one tree without a top level, imported with

@@ -292,7 +292,8 @@ class Declaration {
                     ->excludes(tolerance_)
                     ->excludes(arguments_.grid_bits_option)
                     ->excludes(arguments_.grid_step_option);
-    rare(add_flag("--strip", arguments_.strip, "Leave the cook record out"));
+    rare(add_flag("--strip", arguments_.strip,
+                  "Leave the cook record out, and of a single mesh its name"));
     rare(add_flag("--trusted", arguments_.trusted,
                   "Read formats that assimp reads once, not first in another process that "
                   "may crash"));

@@ -39,7 +39,14 @@ same "$(jq -r '.trees[0].name' out)" cube
 same "$(jq -r .cook_record out | jq -c '[.options.codec, .sources[0].name, .sources[0].faces]')" '["auto","cube",6]'
 expect 0 "$boxtree" cook cube.obj -o stripped.bxt --strip
 expect 0 "$boxtree" info stripped.bxt --json
-same "$(jq .cook_record out)" null
+same "$(jq -c '[.cook_record, .trees[0].name]' out)" '[null,""]'
+# A renamed source changes no byte then; names of several trees are kept, by which they are found.
+cp cube.obj renamed.obj
+expect 0 "$boxtree" cook renamed.obj -o renamed.bxt --strip
+cmp stripped.bxt renamed.bxt
+expect 0 "$boxtree" cook cube.obj renamed.obj -o renamed.bxt --strip
+expect 0 "$boxtree" info renamed.bxt --json
+same "$(jq -c '[.trees[].name]' out)" '["cube","renamed"]'
 
 # A grid: coarse enough to move vertices, fine enough for a tolerance, one of the two.
 expect 0 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --json

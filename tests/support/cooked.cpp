@@ -24,6 +24,7 @@ namespace {
 
 std::vector<std::byte> cook_mesh_bytes(cooker::SceneMesh mesh, std::vector<std::string> materials,
                                        CodecId codec, cooker::CookOptions options) {
+  const std::string name = mesh.mesh.name;
   cooker::CookInput input;
   input.has_top_level = false;
   input.imports.emplace_back();
@@ -31,7 +32,8 @@ std::vector<std::byte> cook_mesh_bytes(cooker::SceneMesh mesh, std::vector<std::
   input.scene.materials = std::move(materials);
   options.codec = codec;
   options.cook_record = false;
-  const cooker::CookedFile cooked = require(cooker::cook(std::move(input), {}, options));
+  cooker::CookedFile cooked = require(cooker::cook(std::move(input), {}, options));
+  cooked.trees.front().name = name;  // not kept without a cook record
   return require(cooker::serialize(cooked.parts()));
 }
 
