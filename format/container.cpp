@@ -26,13 +26,11 @@ std::uint64_t key_of(SectionKind kind, std::uint32_t owner) {
   return number_of(owner) << (kOwnerBegin - kKindBegin) | static_cast<std::uint64_t>(kind);
 }
 
-// An error about one section.
+// An error about one section. `text` begins with "): ".
 Error section_error(Errc code, std::size_t index, const SectionEntry& entry, std::string_view text,
                     std::initializer_list<std::uint64_t> numbers = {}) {
-  std::string place = "section " + std::to_string(index) + " (";
-  place += section_name(entry.kind);
-  place += "): ";
-  return error_with(code, place, text, numbers);
+  return error_at(error_with(code, {}, "section # (", {index}).detail,
+                  error_with(code, section_name(entry.kind), text, numbers));
 }
 
 // As far as the file goes: what is too short for a header may be no .bxt file at all.
@@ -116,6 +114,10 @@ std::string_view section_name(SectionKind kind) noexcept {
       return "user_data_runs";
     case SectionKind::kFaceUserData:
       return "face_user_data";
+    case SectionKind::kPack:
+      return "pack";
+    case SectionKind::kMembers:
+      return "members";
   }
   return "unknown";
 }
@@ -169,7 +171,8 @@ Result<Container> check_container(Bytes file, ChecksumFunction checksum,
     return error_with(Errc::kTruncated, {}, "the file has # bytes, a header alone has #",
                       {file.size(), sizeof(FileHeader)});
   }
-  Container container{load<FileHeader>(file.data()), {}};
+  Container container;
+  container.header = load<FileHeader>(file.data());
   const FileHeader& header = container.header;
   if (Status status = check_header(header, file.size(), known_features); !status)
     return status.error();
@@ -180,17 +183,17 @@ Result<Container> check_container(Bytes file, ChecksumFunction checksum,
     return Error{Errc::kHeaderCorrupt, "checksum of header and section table differs"};
   }
   // kMaxSections sizes of 40 bits do not overflow.
-  container.sections.reserve(header.section_count);
+  container.sections = std::vector<SectionEntry>(header.section_count);
   for (std::size_t i = 0; i < header.section_count; ++i) {
     const SectionEntry entry = SectionEntry::of(load<SectionRow>(table.data(), i), end);
     if (entry.is_required && section_name(entry.kind) == "unknown") {
-      return section_error(Errc::kSectionUnknown, i, entry, "kind # is required",
+      return section_error(Errc::kSectionUnknown, i, entry, "): kind # is required",
                            {static_cast<std::uint64_t>(entry.kind)});
     }
-    if (i > 0 && entry.key() <= container.sections.back().key()) {
-      return section_error(Errc::kSectionOrder, i, entry, "it is not after the one before");
+    if (i > 0 && entry.key() <= container.sections[i - 1].key()) {
+      return section_error(Errc::kSectionOrder, i, entry, "): it is not after the one before");
     }
-    container.sections.push_back(entry);
+    container.sections[i] = entry;
     end = entry.end();
   }
   if (const std::uint64_t whole = file_end(end); whole != file.size()) {

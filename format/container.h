@@ -63,6 +63,9 @@ enum class SectionKind : std::uint32_t {
   kInstanceEdges = 21,  // edges where instances meet (format/instance_edges.h)
   kUserDataRuns = 22,   // owner: a tree; FaceRun[]
   kFaceUserData = 23,   // owner: a tree; user data of each face in tree order
+  // A pack (format/pack.h); owner kNoOwner.
+  kPack = 24,     // PackRow[], one per tree
+  kMembers = 25,  // whole .bxt files, each at a multiple of kLargeAlignment in the section
 };
 
 /// "nodes"; "unknown" for a kind this reader does not know.

@@ -9,10 +9,13 @@
 namespace boxtree {
 
 /// Sections in one file. Bounds the work of open().
-inline constexpr std::uint32_t kMaxSections = 1u << 16;
+inline constexpr std::uint32_t kMaxSections = 1u << 20;
 
-/// Trees in one file.
-inline constexpr std::uint32_t kMaxTrees = 1u << 12;
+/// Trees in one file that is no pack: a row of the section table has 16 bits for an owner or none.
+inline constexpr std::uint32_t kMaxTrees = (1u << 16) - 1;
+
+/// Trees in a pack.
+inline constexpr std::uint32_t kMaxPackedTrees = 1u << 24;
 
 /// Inner nodes on the longest path of a tree; traversal stacks are sized by it.
 /// 2^31 faces need 31 levels of halving; the rest is room for uneven splits and shrink nodes.

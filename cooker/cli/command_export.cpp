@@ -112,8 +112,7 @@ class SourceMeshes {
     ImportOptions options = careful_import();
     for (const std::uint32_t i : trees) {
       if (i >= file.tree_count()) continue;
-      if ((OpenFile::of(file).tree_record(i).flags & kTreePositionsF64) != 0)
-        options.precision = Precision::kF64;
+      if ((record_of(file, i).flags & kTreePositionsF64) != 0) options.precision = Precision::kF64;
     }
     SourceMeshes meshes;
     Result<Imported> whole = import_mesh(path, options);
@@ -162,10 +161,10 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
   for (const std::uint32_t i : *numbers) {
     BindOptions options;
     if (i < file.tree_count() && meshes) {
-      options.mesh = meshes->find(OpenFile::of(file).tree_record(i));
+      options.mesh = meshes->find(record_of(file, i));
       options.verify_mesh = true;
     } else if (i < file.tree_count() && !with_triangles) {
-      options.mesh = absent_arrays(OpenFile::of(file).tree_record(i));
+      options.mesh = absent_arrays(record_of(file, i));
     }
     Result<Tree> tree = Tree::bind(file, i, options);
     if (tree.code() == Errc::kExternalMeshNeeded) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,6 +26,7 @@
 #include "format/active_edges.h"
 #include "format/container.h"
 #include "format/face_numbers.h"
+#include "format/pack.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/tree/frame.h"
@@ -122,10 +124,11 @@ Json material_names(const File& file) {
   return names;
 }
 
-Json tree_json(const File& file, std::uint32_t index) {
+// As a tree of one file has it; `name`: that of a pack is another.
+Json tree_json(const File& file, std::uint32_t index, std::string_view name) {
   const TreeRecord record = OpenFile::of(file).tree_record(index);
   const TreeBytes bytes = bytes_of(file, index);
-  Json json = {{"name", file.tree_name(index)},
+  Json json = {{"name", name},
                {"codec", codec_name(record.codec)},
                {"geometry", geometry_name(record.geometry)},
                {"triangles", record.triangle_count},
@@ -171,13 +174,32 @@ Json cook_record_json(const File& file) {
   return std::string_view(reinterpret_cast<const char*>(record.data()), record.size());
 }
 
-Json file_json(const File& file) {
+Result<Json> file_json(const File& file) {
   const FileHeader& header = OpenFile::of(file).container().header;
   Json json = {{"version", fmt::format("{}.{}", header.version_major, header.version_minor)},
                {"file_bytes", file.bytes().size()}};
   json["cook_record"] = cook_record_json(file);
   json["trees"] = Json::array();
-  for (std::uint32_t i = 0; i < file.tree_count(); ++i) json["trees"].push_back(tree_json(file, i));
+  std::set<std::uint64_t> members;  // where they begin
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
+    if (!file.is_pack()) {
+      json["trees"].push_back(tree_json(file, i, file.tree_name(i)));
+      continue;
+    }
+    const PackRow row = OpenFile::of(file).pack_row(i);
+    members.insert(row.offset);
+    const Result<Member> member = file.member(i);
+    if (!member) return member.error();
+    Json tree = tree_json(member->file, member->tree, file.tree_name(i));
+    tree["member"] = {{"name", file.tree_name(i).substr(0, row.member_name_bytes)},
+                      {"tree", row.tree},
+                      {"bytes", row.bytes},
+                      {"has_scene", member->file.has_scene()}};
+    tree["cook_record"] = cook_record_json(member->file);
+    tree["material_names"] = material_names(member->file);
+    json["trees"].push_back(std::move(tree));
+  }
+  if (file.is_pack()) json["members"] = members.size();
   json["sections"] = Json::array();
   for (const SectionEntry& entry : OpenFile::of(file).container().sections) {
     json["sections"].push_back(
@@ -231,6 +253,10 @@ std::string text_of_bytes(const Json& json) {
 void print_file(const Json& json) {
   fmt::print("format {}, {} bytes\n", json["version"].get<std::string>(),
              json["file_bytes"].get<std::uint64_t>());
+  if (json.contains("members")) {
+    fmt::print("pack: {} of {}\n", counted(json["trees"].size(), "tree"),
+               counted(json["members"].get<std::uint64_t>(), "file"));
+  }
   for (std::size_t i = 0; i < json["trees"].size(); ++i) {
     const Json& tree = json["trees"][i];
     const auto name = tree["name"].get<std::string>();
@@ -274,11 +300,14 @@ Result<Json> info_on(const std::filesystem::path& path) {
   if (!opened) return opened.error();
   const File* const file = &opened->file;
   for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
-    if (Status status = check_tree_record(OpenFile::of(*file).tree_record(i), i); !status) {
-      return status.error();
+    if (file->is_pack()) {
+      if (const Result<Member> member = file->member(i); !member) return member.error();
     }
+    if (Status status = check_tree_record(record_of(*file, i), i); !status) return status.error();
   }
-  Json json = file_json(*file);
+  Result<Json> content = file_json(*file);
+  if (!content) return content.error();
+  Json& json = *content;
   Result<Json> scene = scene_json(*file);
   if (!scene) return scene.error();
   if (!scene->is_null()) {
@@ -289,7 +318,7 @@ Result<Json> info_on(const std::filesystem::path& path) {
   if (opened->blob_bytes != 0) {
     json["blob"] = {{"file_bytes", opened->blob_bytes}, {"resident_bytes", file->bytes().size()}};
   }
-  return json;
+  return content;
 }
 
 // A file that cannot be read keeps nothing from being said of the others.

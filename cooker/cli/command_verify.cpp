@@ -40,7 +40,7 @@ struct Arguments {
 template <class Property>
 bool any_tree(const File& file, Property property) {
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    if (property(OpenFile::of(file).tree_record(i))) return true;
+    if (property(record_of(file, i))) return true;
   }
   return false;
 }

@@ -56,6 +56,8 @@ int main(int argc, char** argv) {
     cooker::add_report_command(app, status);
     cooker::add_export_command(app, status);
     cooker::add_key_command(app, status);
+    cooker::add_pack_command(app, status);
+    cooker::add_split_command(app, status);
     cooker::add_completion_command(app, status);
     cooker::add_help_command(app, status);
     if (const std::optional<int> ended = app.run(argc, argv); ended) status = *ended;

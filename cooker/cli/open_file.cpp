@@ -14,6 +14,7 @@
 #include "cooker/system/input_failure.h"
 #include "cooker/text/nearest_name.h"
 #include "cooker/text/number_of.h"
+#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -79,6 +80,12 @@ Result<std::uint32_t> find_tree(const File& file, const WhichTree& wanted) {
   std::string meant = suggestion(which, names);
   if (meant.empty() && names.size() <= kMostListed) meant = "; expected " + listed(names);
   return Error{Errc::kTreeIndex, fmt::format("no tree is called \"{}\"{}", which, meant)};
+}
+
+TreeRecord record_of(const File& file, std::uint32_t tree) {
+  if (!file.is_pack()) return OpenFile::of(file).tree_record(tree);
+  const Result<Member> member = file.member(tree);
+  return member ? OpenFile::of(member->file).tree_record(member->tree) : TreeRecord{};
 }
 
 Error naming_mesh(const std::filesystem::path& mesh, const Error& error) {

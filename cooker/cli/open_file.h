@@ -10,6 +10,7 @@
 #include <boxtree/file.h>
 
 #include "cooker/import/import.h"
+#include "format/tree_record.h"
 
 namespace boxtree::cooker {
 
@@ -43,6 +44,10 @@ struct WhichTree {
 /// The tree with that name or, if none is called so, that number. A number need not be in the file:
 /// binding finds that out. Error: kTreeIndex.
 Result<std::uint32_t> find_tree(const File& file, const WhichTree& which);
+
+/// The record of a tree, which may be in a member of a pack; one that no check accepts if its
+/// member cannot be opened, which binding the tree tells. Precondition: the file has that tree.
+[[nodiscard]] TreeRecord record_of(const File& file, std::uint32_t tree);
 
 /// The same error; of a mesh that is not the tree's (kExternalMeshMismatch) it names the one that
 /// was given and the one that is needed.

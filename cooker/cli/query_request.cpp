@@ -407,8 +407,8 @@ Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
   std::unique_ptr<SourceMesh> source;
   if (!mesh.empty()) {
     ImportOptions import = careful_import();
-    const bool f64 = *index < file->tree_count() &&
-                     (OpenFile::of(*file).tree_record(*index).flags & kTreePositionsF64) != 0;
+    const bool f64 =
+        *index < file->tree_count() && (record_of(*file, *index).flags & kTreePositionsF64) != 0;
     if (f64) import.precision = Precision::kF64;
     Result<Imported> imported = import_mesh(mesh, import);
     if (!imported) return imported.error();

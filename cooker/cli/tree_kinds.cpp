@@ -46,6 +46,11 @@ Part part_of(QueryKinds kind) {
 }  // namespace
 
 Result<QueryKinds> kinds_of_tree(const File& file, std::uint32_t tree) {
+  if (file.is_pack()) {
+    const Result<Member> member = file.member(tree);
+    if (!member) return member.error();
+    return kinds_of_tree(member->file, member->tree);
+  }
   if (!file.has_scene()) return kAllKinds;
   const Result<Scene> scene = bind_without_meshes(file);
   if (!scene) return scene.error();
@@ -57,6 +62,10 @@ Result<QueryKinds> kinds_of_tree(const File& file, std::uint32_t tree) {
 }
 
 Error kind_left_out(const File& file, std::uint32_t tree, QueryKinds kind) {
+  if (file.is_pack()) {
+    const Result<Member> member = file.member(tree);
+    return member ? kind_left_out(member->file, member->tree, kind) : member.error();
+  }
   SceneOptions needed;
   needed.queries = kind;
   const Result<Scene> scene = bind_without_meshes(file, needed);

@@ -17,6 +17,7 @@
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/face_number_proof.h"
 #include "cooker/proof/names.h"
+#include "cooker/proof/pack_proof.h"
 #include "cooker/proof/reserved.h"
 #include "cooker/proof/scene_proof.h"
 #include "format/limits.h"
@@ -297,6 +298,25 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
   return Tree::bind(file, index, options);
 }
 
+// The index of a pack and, where that is valid, every member.
+Findings verify_members(const File& pack, const std::optional<MeshArrays>& mesh) {
+  Findings findings = check_pack(pack);
+  if (!findings.empty()) return findings;
+  for_each_member(pack, [&](std::string_view name, std::span<const std::uint32_t> trees) {
+    if (findings.size() >= kMaxFindings) return;
+    const Result<Member> member = pack.member(trees.front());
+    if (!member) {
+      findings.push_back(member.error());
+      return;
+    }
+    for (Error& finding : verify_file(member->file, mesh)) {
+      finding.detail = "member " + std::string(name) + ": " + finding.detail;
+      findings.push_back(std::move(finding));
+    }
+  });
+  return findings;
+}
+
 }  // namespace
 
 std::string fault_of_node(std::uint32_t node, NodeState state) {
@@ -319,6 +339,10 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
     findings.push_back(status.error());
   }
   if (Status status = verify_checksums(file); !status) findings.push_back(status.error());
+  if (file.is_pack()) {
+    for (Error& finding : verify_members(file, mesh)) findings.push_back(std::move(finding));
+    return findings;
+  }
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
     const Result<Tree> tree = bind_for_proof(file, i, mesh);
     if (!tree) {

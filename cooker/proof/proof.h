@@ -42,7 +42,7 @@ struct TreeProof {
 
 /// Checks an open file: padding, section checksums, records, names, reserved bytes, and each tree
 /// by prove_tree and against its record. `mesh` is for trees with external geometry; without
-/// it their triangles are not read.
+/// it their triangles are not read. Of a pack, its index, and each member likewise.
 [[nodiscard]] Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh = {});
 
 }  // namespace boxtree::cooker

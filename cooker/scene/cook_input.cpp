@@ -183,8 +183,10 @@ Result<CookInput> load_trees(std::span<const fs::path> inputs, const ImportOptio
                              const Progress& progress) {
   // Reported before hours of work, not after.
   if (inputs.size() > kMaxTrees) {
-    return Error{Errc::kMeshTooLarge, fmt::format("{} inputs, each a tree: a file holds {} at most",
-                                                  inputs.size(), kMaxTrees)};
+    return Error{Errc::kMeshTooLarge,
+                 fmt::format("{} inputs, each a tree: a file holds {} at most; "
+                             "cook files of their own, and pack these",
+                             inputs.size(), kMaxTrees)};
   }
   CookInput input;
   input.has_top_level = false;

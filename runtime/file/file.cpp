@@ -5,6 +5,8 @@
 
 #include <boxtree/file.h>
 
+#include "format/message.h"
+#include "format/pack.h"
 #include "runtime/file/open_file.h"
 
 namespace boxtree {
@@ -13,7 +15,9 @@ Result<File> File::open(const std::string& path, const OpenOptions& options) {
   Result<Mapping> mapping = options.copy ? Mapping::copy(path) : Mapping::map(path);
   if (!mapping) return mapping.error();
   Result<File> checked = OpenFile::open(std::move(*mapping), options);
-  if (!checked) return Error{checked.code(), path + ": " + checked.error().detail};
+  if (!checked) {
+    return error_at(error_with(checked.code(), path, ": ").detail, checked.error());
+  }
   return checked;
 }
 
@@ -35,6 +39,15 @@ bool File::advise(Access access) const noexcept {
 std::uint32_t File::tree_count() const noexcept {
   return open_->tree_count();
 }
+bool File::is_pack() const noexcept {
+  return open_->is_pack();
+}
+Result<Member> File::member(std::uint32_t index) const {
+  if (index >= tree_count()) return index_error(Errc::kTreeIndex, "tree", index, tree_count());
+  Result<File> file = is_pack() ? open_->open_member(index) : open(bytes());
+  if (!file) return file.error();
+  return Member{std::move(*file), is_pack() ? open_->pack_row(index).tree : index};
+}
 bool File::has_scene() const noexcept {
   return !open_->section(SectionKind::kScene).empty();
 }
@@ -44,7 +57,19 @@ std::string_view File::tree_name(std::uint32_t index) const noexcept {
 }
 
 Result<std::uint32_t> File::find_tree(std::string_view name) const {
-  for (std::uint32_t i = 0; i < tree_count(); ++i) {
+  std::uint32_t i = 0;
+  if (is_pack()) {
+    // The first that is not before the name. Bytes are unsigned in char_traits<char>, too.
+    for (std::uint32_t count = tree_count(); count > 0;) {
+      const std::uint32_t half = count / 2;
+      const bool is_before = tree_name(i + half) < name;
+      if (is_before) i += half + 1;
+      count = is_before ? count - half - 1 : half;
+    }
+    if (i < tree_count() && tree_name(i) == name) return i;
+    i = tree_count();
+  }
+  for (; i < tree_count(); ++i) {
     if (tree_name(i) == name) return i;
   }
   return Error{Errc::kTreeIndex, "no tree is named \"" + std::string(name) + "\""};

@@ -13,9 +13,11 @@
 
 namespace boxtree {
 
+struct PackRow;
 struct TreeRecord;
 
-/// A file whose header, section table and tree table have been checked.
+/// A file whose header and section table have been checked, and the size of its tree table or
+/// index.
 class OpenFile {
  public:
   /// As File::open, on the caller's memory or on memory that the file takes over.
@@ -30,10 +32,19 @@ class OpenFile {
   bool advise(Access access) const noexcept { return mapping_.advise(access); }
   [[nodiscard]] const Container& container() const noexcept { return container_; }
   [[nodiscard]] std::uint32_t tree_count() const noexcept { return tree_count_; }
+  [[nodiscard]] bool is_pack() const noexcept;
 
   /// The record of tree `index`, not yet checked (BoundTree::bind checks it). Precondition:
-  /// index < tree_count().
+  /// index < tree_count(), and the file is no pack: sections of trees, too, are those of members.
   [[nodiscard]] TreeRecord tree_record(std::uint32_t index) const noexcept;
+
+  /// The row of tree `index` of a pack, not yet checked. Precondition: index < tree_count().
+  [[nodiscard]] PackRow pack_row(std::uint32_t index) const noexcept;
+
+  /// The member of a pack that tree `index` is in. Its bytes are those of this file. Precondition:
+  /// index < tree_count(). Errors: those of File::open; kRecordInvalid if it is outside the
+  /// section.
+  [[nodiscard]] Result<File> open_member(std::uint32_t index) const;
 
   /// Name of tree `index`, empty if it has none or the record points outside the names section.
   [[nodiscard]] std::string_view tree_name(std::uint32_t index) const noexcept;
@@ -46,7 +57,8 @@ class OpenFile {
 
  private:
   OpenFile() = default;
-  static Result<File> check(std::unique_ptr<OpenFile> file, const OpenOptions& options);
+  static Result<File> check(std::unique_ptr<OpenFile> file, const OpenOptions& options,
+                            std::uint32_t known_features);
 
   Mapping mapping_;
   Bytes bytes_;

@@ -7,6 +7,7 @@
 #include "format/face_numbers.h"
 #include "format/message.h"
 #include "format/numbers.h"
+#include "format/pack.h"
 #include "format/scene_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/file/section.h"
@@ -28,6 +29,24 @@ bool are_readable(const MeshArrays& mesh) {
          mesh.position_stride >= position_bytes && (is_there || mesh.face_count == 0);
 }
 
+// Precondition: the file is no pack and has that tree.
+TreeParts parts_of(const OpenFile& file, std::uint32_t index, std::string_view name) {
+  return {file.tree_record(index),
+          name,
+          file.section(SectionKind::kNodes, index),
+          file.section(SectionKind::kVertices, index),
+          file.section(SectionKind::kCorners, index),
+          file.section(SectionKind::kFaceIds, index),
+          file.section(SectionKind::kDuplicates, index),
+          file.section(SectionKind::kActiveEdges, index),
+          file.section(SectionKind::kMaterials),
+          file.section(SectionKind::kNames),
+          {file.section(SectionKind::kMaterialRuns, index),
+           file.section(SectionKind::kFaceMaterials, index)},
+          {file.section(SectionKind::kUserDataRuns, index),
+           file.section(SectionKind::kFaceUserData, index)}};
+}
+
 }  // namespace
 
 Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptions& options) {
@@ -35,21 +54,14 @@ Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptio
   if (index >= file.tree_count()) {
     return index_error(Errc::kTreeIndex, "tree", index, file.tree_count());
   }
-  return BoundTree::bind({file.tree_record(index),
-                          file.tree_name(index),
-                          file.section(SectionKind::kNodes, index),
-                          file.section(SectionKind::kVertices, index),
-                          file.section(SectionKind::kCorners, index),
-                          file.section(SectionKind::kFaceIds, index),
-                          file.section(SectionKind::kDuplicates, index),
-                          file.section(SectionKind::kActiveEdges, index),
-                          file.section(SectionKind::kMaterials),
-                          file.section(SectionKind::kNames),
-                          {file.section(SectionKind::kMaterialRuns, index),
-                           file.section(SectionKind::kFaceMaterials, index)},
-                          {file.section(SectionKind::kUserDataRuns, index),
-                           file.section(SectionKind::kFaceUserData, index)}},
-                         index, options);
+  if (!file.is_pack()) {
+    return BoundTree::bind(parts_of(file, index, file.tree_name(index)), index, options);
+  }
+  const Result<File> member = file.open_member(index);
+  if (!member) return member.error();
+  return BoundTree::bind(
+      parts_of(OpenFile::of(*member), file.pack_row(index).tree, file.tree_name(index)), index,
+      options);
 }
 
 Result<Tree> Tree::bind(const File& file, const BindOptions& options) {
@@ -77,7 +89,7 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
   tree.keep(parts.record);
   tree.name_ = parts.name;
   if (Status status = tree.bind_sections(parts, options); !status) {
-    return error_at(error_with(status.code(), {}, "tree #: ", {index}).detail, status.error());
+    return error_of("tree", index, status.error());
   }
   tree.leaves_.prepare_floats(tree.largest_abs_);
   return bound;

@@ -129,6 +129,8 @@ RUNS = {
         "cook --profile parts.toml -o parts.bxt",
         "cook --profile nameless.toml -o nameless.bxt",
     ],
+    "pack": ["pack crate.bxt scene.bxt field.bxt stripped.bxt --names path -o packed.bxt"],
+    "split": ["split packed.bxt -o taken"],
     "key": ["key crate.obj", "key bad.obj crate.obj -o two.bxt --exact", "key --manifest one.jsonl"],
     "cook --cache, --manifest": [
         "cook crate.obj -o cached.bxt --cache cooked",
@@ -148,6 +150,7 @@ RUNS = {
         "[3] info arrays.bxt external.bxt blob.bxt level.gltf",
         "info parts.bxt",
         "info level.bxt",
+        "info packed.bxt",
         "info damaged.bxt corrupt.bxt",
     ],
     "verify": ["verify crate.bxt", "[3] verify crate.bxt damaged.bxt"],

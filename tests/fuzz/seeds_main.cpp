@@ -7,17 +7,20 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <boxtree/blob.h>
 
+#include "cooker/write/pack_writer.h"
 #include "tests/fuzz/query_input.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
+#include "tests/support/temp_folder.h"
 
 namespace boxtree {
 namespace {
@@ -181,6 +184,35 @@ bool write_scenes(const fs::path& folder) {
   return good;
 }
 
+// Packs of one file, of several, and of a file with several trees.
+bool write_packs(const fs::path& folder) {
+  const cooker::SceneParts parts = test::random_parts(4, 2, 0, 2, 60);
+  const std::map<fs::path, std::vector<std::byte>> files = {
+      {"city.bxt", test::cook_bytes(test::city(1, 1), CodecId::kWide8)},
+      {"soup.bxt", test::cook_bytes(test::soup(9, 1), CodecId::kWide4)},
+      {"scene.bxt",
+       test::cook_scene({test::city(1, 1), test::soup(9, 2)}, parts, {CodecId::kWide8}).bytes}};
+  const cooker::OpenInput open = [&](const fs::path& path) {
+    return File::open(Bytes(files.at(path)));
+  };
+  bool good = true;
+  unsigned seed = 60;
+  for (const std::vector<fs::path>& packed :
+       {std::vector<fs::path>{"city.bxt"}, {"city.bxt", "scene.bxt", "soup.bxt"}}) {
+    std::vector<cooker::PackMember> members;
+    for (const fs::path& path : packed) {
+      members.push_back(require(list_members(path, cooker::PackNames::kPath, open)).front());
+    }
+    const test::TempFolder temporary;
+    static_cast<void>(require(write_pack(temporary.path() / "pack.bxt", members, open)));
+    const std::string bytes = test::read_text(temporary.path() / "pack.bxt");
+    good = write(folder / "tree", "pack-" + std::to_string(packed.size()),
+                 std::as_bytes(std::span(bytes)), ++seed) &&
+           good;
+  }
+  return good;
+}
+
 }  // namespace
 }  // namespace boxtree
 
@@ -191,7 +223,7 @@ int main(int argc, char** argv) {
   }
   return boxtree::write_trees(argv[1]) && boxtree::write_materials(argv[1]) &&
                  boxtree::write_stores(argv[1]) && boxtree::write_scenes(argv[1]) &&
-                 boxtree::write_scenes_with_edges(argv[1])
+                 boxtree::write_scenes_with_edges(argv[1]) && boxtree::write_packs(argv[1])
              ? 0
              : 1;
 }

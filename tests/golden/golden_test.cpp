@@ -8,8 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include "cooker/write/pack_writer.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
+#include "tests/support/require.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree {
@@ -197,6 +199,47 @@ std::string kind_name(const testing::TestParamInfo<Kind>& kind) {
   std::string name = kind.param.name;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
+}
+
+// Of two other golden files.
+std::vector<std::byte> packed() {
+  const auto open = [](const std::filesystem::path& path) -> Result<File> {
+    static const std::vector<std::byte> wide8 = golden_bytes({"wide8", {}, {}});
+    static const std::vector<std::byte> dedup = golden_bytes({"dedup", {}, {}});
+    return File::open(Bytes(path == "wide8.bxt" ? wide8 : dedup));
+  };
+  std::vector<cooker::PackMember> members;
+  for (const char* path : {"wide8.bxt", "dedup.bxt"}) {
+    members.push_back(
+        test::require(cooker::list_members(path, cooker::PackNames::kPath, open)).front());
+  }
+  const test::TempFolder folder;
+  static_cast<void>(test::require(cooker::write_pack(folder.path() / "pack.bxt", members, open)));
+  const std::string text = test::read_text(folder.path() / "pack.bxt");
+  const Bytes bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST(GoldenPack, PackingGivesTheSameBytesAsEver) {
+  EXPECT_EQ(packed(), golden_bytes({"pack", {}, {}}));
+}
+
+TEST(GoldenPack, OpensAndAnswers) {
+  const std::vector<std::byte> golden = golden_bytes({"pack", {}, {}});
+  const Result<File> file = File::open(Bytes(golden));
+  ASSERT_TRUE(file.ok()) << file.error().message();
+  for (const auto& [name, codec] :
+       {std::pair("dedup", CodecId::kDedup), std::pair("wide8", CodecId::kWide8)}) {
+    const Result<std::uint32_t> number = file->find_tree(name);
+    ASSERT_TRUE(number.ok()) << number.error().message();
+    const Result<Tree> tree = Tree::bind(*file, *number);
+    ASSERT_TRUE(tree.ok()) << tree.error().message();
+    EXPECT_EQ(BoundTree::of(*tree).codec(), codec);
+    const auto down = closest_hit(*tree, {{0.25, 0.25, 3}, {0, 0, -1}});
+    ASSERT_TRUE(down.ok() && down.has_value());
+    EXPECT_EQ(down->face.id, 0u);
+    EXPECT_EQ(down->t, 3);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Golden, testing::ValuesIn(kinds()), kind_name);

@@ -18,6 +18,7 @@ NODES, VERTICES, CORNERS, FACE_IDS, NAMES, DUPLICATES, ACTIVE_EDGES = 2, 3, 4, 5
 MATERIALS, MATERIAL_RUNS, FACE_MATERIALS = 15, 16, 17
 USER_DATA_RUNS, FACE_USER_DATA = 22, 23
 SCENE, INSTANCES, POSES, INSTANCE_EDGES = 10, 12, 13, 21
+TREES, PACK, MEMBERS = 1, 24, 25
 EMPTY, LEAF, SUBTREE = 0, 1, 2
 EXTERNAL, ARRAYS, GRID, EXACT = 1, 2, 3, 4
 
@@ -43,13 +44,14 @@ def xxh3(data):
 class File:
     """Header and section table (sections 1 and 2)."""
 
-    def __init__(self, data):
+    def __init__(self, data, may_be_pack=True):
         self.data = data
         expect(len(data) >= 32, "a header has 32 bytes")
         magic, major, _minor, count, incompatible, _compatible, checksum = struct.unpack_from(
             "<8sHHIIIQ", data)
         expect(magic == bytes([0x89, 0x42, 0x58, 0x54, 0x0D, 0x0A, 0x1A, 0x0A]), "magic")
-        expect(major == 1 and incompatible == 0, "version and features")
+        expect(major == 1 and incompatible in ((0, 2) if may_be_pack else (0,)), "version and features")
+        self.is_pack = incompatible == 2
         end = 32 + 16 * count
         expect(end <= len(data), "section table inside the file")
         expect(checksum == xxh3(data[:24] + data[32:end]), "checksum of header and table")
@@ -749,6 +751,47 @@ def instance_edges(file, trees):
     return lists
 
 
+def packed(file):
+    """Of each tree of a pack (section 13): its name, its member and its number there."""
+    rows, names, members = file.section(PACK), file.section(NAMES), file.section(MEMBERS)
+    expect((TREES, NO_OWNER) not in file.sections, "no section trees in a pack")
+    expect((PACK, NO_OWNER) in file.sections and len(rows) % 32 == 0, "size of section pack")
+    found, by_place = [], {}
+    before = None
+    for place, size, tree, at, length, prefix in struct.iter_unpack("<QQIIII", rows):
+        expect(at + length <= len(names), "a name inside the section")
+        name = names[at:at + length]
+        name.decode()
+        expect(before is None or before < name, "names ascend")
+        before = name
+        expect(0 < prefix == length or 0 < prefix < length - 1 and name[prefix:prefix + 1] == b"/",
+               "a name begins with that of a member")
+        by_place.setdefault((place, size), []).append((tree, name, prefix))
+        found.append((name, (place, size), tree))
+    end, before = 0, None
+    files = {}
+    for (place, size), trees in sorted(by_place.items()):
+        begin = end + -end % 64
+        expect(place == begin and place + size <= len(members), "members one behind another")
+        expect(not any(members[end:begin]), "zeros between members")
+        end = place + size
+        member = {name[:prefix] for _, name, prefix in trees}
+        expect(len(member) == 1 and (before is None or before < max(member)), "names of members ascend")
+        before = max(member)
+        inside = files[place, size] = File(members[place:end], may_be_pack=False)
+        count = len(inside.section(TREES)) // 128
+        expect(sorted(tree for tree, _, _ in trees) == list(range(count)), "each tree of a member once")
+        expect(all((prefix == len(name)) == (count == 1) for _, name, prefix in trees), "names of trees")
+    expect(end == len(members), "the end of the last member")
+    return found, files
+
+
+def read_pack(file):
+    found, files = packed(file)
+    read_members = {place: check_file(member)[0] for place, member in files.items()}
+    return [{**read_members[place][tree], "name": name.decode()} for name, place, tree in found]
+
+
 def read(data):
     return read_file(data)[0]
 
@@ -756,7 +799,12 @@ def read(data):
 def read_file(data):
     """What is found of the trees, and the edges where instances meet."""
     file = File(data)
-    records = file.section(1)
+    return (read_pack(file), None) if file.is_pack else check_file(file)
+
+
+def check_file(file):
+    records = file.section(TREES)
+    expect((TREES, NO_OWNER) in file.sections, "section trees")
     expect(len(records) % 128 == 0, "size of section trees")
     trees = [Tree(file, i, records[128 * i:128 * (i + 1)]) for i in range(len(records) // 128)]
     return [tree.check() for tree in trees], instance_edges(file, trees)

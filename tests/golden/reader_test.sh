@@ -121,13 +121,25 @@ for precision in "exact = true" "tolerance = 0.001"; do
     fail "tiles, $precision: $(jq -c .instance_edges "$work/theirs")"
 done
 
+# Packs: names, members and trees.
+for mesh in "$@"; do
+  name=$(basename "$mesh" .obj)
+  "$boxtree" cook "$mesh" -o "$work/$name.bxt" -q
+  files+=("$work/$name.bxt")
+done
+"$boxtree" cook "$@" -o "$work/several.bxt" -q
+"$boxtree" pack "${files[@]}" "$work/several.bxt" -o "$work/pack.bxt" -q
+read_bxt "$work/pack.bxt" >"$work/theirs" || fail "a pack"
+"$boxtree" info "$work/pack.bxt" --json >"$work/ours"
+[ "$(jq -cS "$keys" "$work/theirs")" = "$(jq -cS "$keys" "$work/ours")" ] || fail "a pack: the two readers differ"
+
 # Each byte of a golden file matters to the second reader too.
 /usr/bin/python3 - "$golden" <<'PYTHON'
 import glob, struct, sys
 sys.path.insert(0, sys.argv[1])
 import read_bxt
 paths = sorted(glob.glob(sys.argv[1] + "/v*.hex"))
-for path in paths[:1] + [path for path in paths if "grid" in path or "wide" in path]:
+for path in paths[:1] + [path for path in paths if "grid" in path or "wide" in path or "pack" in path]:
     data = bytes.fromhex(open(path).read())
     for i in range(len(data)):
         if 10 <= i < 12 or 32 <= i < 40:

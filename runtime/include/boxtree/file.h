@@ -15,6 +15,7 @@
 namespace boxtree {
 
 class OpenFile;
+struct Member;
 
 /// How a file is opened.
 struct OpenOptions {
@@ -34,12 +35,15 @@ enum class Access : std::uint8_t {
   kDontNeed,    ///< Nothing for a while: gives the memory back; what is read again is loaded again.
 };
 
-/// Immutable once open; safe to use from many threads. Move-only; trees bound to it point into its
-/// bytes and must not outlive it (moving the File keeps them valid).
+/// A .bxt file, or a pack of many, which is used in the same way: its trees are those of all
+/// members, in the order of their names. Immutable once open; safe to use from many threads.
+/// Move-only; trees bound to it point into its bytes and must not outlive it (moving the File keeps
+/// them valid).
 class BOXTREE_API File {
  public:
-  /// Maps `path` (UTF-8) and checks header and section table; no section but the tree table is
-  /// touched, so the cost does not depend on the size of the file. Safe for untrusted bytes.
+  /// Maps `path` (UTF-8) and checks header and section table; no section is touched, so the cost
+  /// does not depend on the size of the file, and that of a pack not on how many trees it has.
+  /// Safe for untrusted bytes.
   /// While it is mapped the file must not be truncated in place: replace files by rename, as the
   /// cooker does, or open them with OpenOptions::copy.
   /// Errors: kFileNotFound, kFileUnreadable, kMapFailed, kOutOfMemory and the codes 10..29.
@@ -67,13 +71,21 @@ class BOXTREE_API File {
   bool advise(Access access) const noexcept;
   /// How many trees it holds, those of a scene included.
   [[nodiscard]] std::uint32_t tree_count() const noexcept;
-  /// Whether Scene::bind() finds a scene.
+  /// Whether it is a pack.
+  [[nodiscard]] bool is_pack() const noexcept;
+  /// The file that tree `index` is in, and its number there: a member of a pack, which may have a
+  /// scene and a cook record of its own; of another file, the same again. Its bytes are those of
+  /// this file, which has to live as long. O(sections) of the member. Errors: kTreeIndex; of a
+  /// pack, kRecordInvalid and those of open() for the member.
+  [[nodiscard]] Result<Member> member(std::uint32_t index) const;
+  /// Whether Scene::bind() finds a scene; no pack has one, but its members may.
   [[nodiscard]] bool has_scene() const noexcept;
 
   /// Name of tree `index`, empty if it has none or the file has no such tree.
   [[nodiscard]] std::string_view tree_name(std::uint32_t index) const noexcept;
 
-  /// Number of the tree with that name; the first if several share it. O(trees). Error: kTreeIndex.
+  /// Number of the tree with that name; the first if several share it, which those of a pack do
+  /// not. O(trees); of a pack O(log(trees)) names. Error: kTreeIndex.
   [[nodiscard]] Result<std::uint32_t> find_tree(std::string_view name) const;
 
  private:
@@ -81,6 +93,12 @@ class BOXTREE_API File {
   explicit File(std::unique_ptr<const OpenFile> open) noexcept;
 
   std::unique_ptr<const OpenFile> open_;
+};
+
+/// A tree where it is stored.
+struct Member {
+  File file;           ///< Over the bytes of the file that it was taken from.
+  std::uint32_t tree;  ///< The number of the tree in it.
 };
 
 /// Whether the bytes of every section have the checksum of the section table; reads the whole file.

@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "format/container.h"
+#include "format/limits.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -32,6 +35,21 @@ TEST(FileWriter, ContainersOfSmallFilesTakeAtMost256Bytes) {
           << mesh.faces.size() << " faces, geometry " << geometry_name(geometry);
     }
   }
+}
+
+// One more than files could hold once, and as many as rows of the section table can tell apart.
+TEST(FileWriter, FilesHoldAsManyTreesAsTheSectionTableTellsApart) {
+  const EncodedTree tree = test::require(cook_as(test::soup(2, 1), CodecId::kWide8));
+  for (const std::uint32_t count : {4097u, kMaxTrees}) {
+    const std::vector<std::byte> bytes = serialize(std::vector<EncodedTree>(count, tree));
+    const File file = test::require(File::open(Bytes(bytes)));
+    ASSERT_EQ(file.tree_count(), count);
+    const Tree last = test::require(Tree::bind(file, count - 1));
+    EXPECT_EQ(last.face_count(), 2u);
+  }
+  const test::TempFolder folder;
+  const std::vector<EncodedTree> more(kMaxTrees + 1, tree);
+  EXPECT_EQ(write_file(folder.path() / "more.bxt", {more, {}}).code(), Errc::kMeshTooLarge);
 }
 
 }  // namespace
