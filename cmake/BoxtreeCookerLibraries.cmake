@@ -1,7 +1,8 @@
 # What the cooker, the command line and their tests use of other projects. A build for another system has none of
 # their libraries: it takes those that are headers alone from this machine, without the headers beside them, and
-# does without assimp and oneTBB.
+# does without assimp, oneTBB and libcurl.
 option(BOXTREE_ASSIMP "Read meshes by assimp, too; else OBJ, OFF, PLY and STL alone" ${native})
+option(BOXTREE_HTTP "Caches on servers (cook --cache http://...), with headers of libcurl" ${native})
 # ThreadSanitizer does not see how an oneTBB built without it orders tasks, and calls every pair of tasks a race.
 set(boxtree_has_tbb ${native})
 if(BOXTREE_SANITIZE MATCHES thread)

@@ -73,6 +73,9 @@ if(BOXTREE_BUILD_COOKER)
 "cooks meshes into collision trees and queries them (command line)
 Turns meshes of any format that assimp reads into .bxt files: small, versioned,
 checked, and queried without loading. Also verifies, exports and measures them.")
+  if(BOXTREE_HTTP) # loaded for caches on servers alone; newer releases call it by the second name
+    set(CPACK_DEBIAN_BOXTREE_PROGRAM_PACKAGE_RECOMMENDS "libcurl4 | libcurl4t64")
+  endif()
   string(PREPEND needed "boxtree ${version_of_build}, ")
 endif()
 boxtree_add_package(boxtree_development libboxtree-dev libdevel "${needed}"

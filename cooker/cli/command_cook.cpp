@@ -108,9 +108,9 @@ int cook_through_cache(const Arguments& arguments, const CookCache& cache) {
                             [&steps](const std::string& step) { steps(step); });
     });
   }
+  warn_of_cache(&cache);
   if (!outcome) return fail(explained(outcome.error(), job, job.output.string()));
   warn_all(outcome->report);
-  if (outcome->cache_fault) warn("--cache: " + outcome->cache_fault->detail);
   const double seconds = seconds_since(start);
   if (arguments.json) {
     print(outcome_json(job.output.string(), key->key, *outcome, seconds));
@@ -145,10 +145,18 @@ int cook_one(Arguments& arguments) {
   return 0;
 }
 
+// A URL that is none is a fault of the command line.
+int cannot_open_cache(const Error& error) {
+  if (error.code == Errc::kDocumentInvalid) return usage("cook: --cache: " + error.detail);
+  return fail(error);
+}
+
 int run(Arguments& arguments) {
   const FarmArguments& farm = arguments.farm;
   const bool is_one = farm.manifest.empty();
   CookJob& job = arguments.cook.job;
+  if (is_url(farm.cache) && farm.cache_size_option->count() > 0)
+    return usage("cook: --cache-size is of a folder; a server keeps to a size of its own");
   if (is_one) {
     if (const std::string fault = contradiction(arguments); !fault.empty())
       return usage("cook: " + fault);
@@ -159,15 +167,14 @@ int run(Arguments& arguments) {
     job.output_stream = output->stream;
     if (Status status = check_files(job); !status) return usage("cook: " + status.error().detail);
   }
-  std::optional<CookCache> cache;
+  std::unique_ptr<CookCache> cache;
   if (!farm.cache.empty()) {
-    Result<CookCache> opened = CookCache::open(farm.cache, *byte_size(farm.cache_size));
-    if (!opened) return fail(opened.error());
-    cache.emplace(std::move(*opened));
+    Result<std::unique_ptr<CookCache>> opened = open_cache(farm.cache, *byte_size(farm.cache_size));
+    if (!opened) return cannot_open_cache(opened.error());
+    cache = std::move(*opened);
   }
   if (!is_one) {
-    return cook_manifest(
-        {farm, cache ? &*cache : nullptr, arguments.jobs, arguments.json, arguments.quiet});
+    return cook_manifest({farm, cache.get(), arguments.jobs, arguments.json, arguments.quiet});
   }
   return cache ? cook_through_cache(arguments, *cache) : cook_one(arguments);
 }

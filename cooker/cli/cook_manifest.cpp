@@ -176,21 +176,16 @@ class Run {
   void tell(const Line& line) {
     const std::string place = jobs_.place(line.job);
     steps_.clear();
+    warn_of_cache(run_.cache);
     if (!line.outcome) {
       has_failed_ = true;
       complain(in_file(place, line.error).message());
     } else {
       warn_all(line.outcome->report, place);
-      if (line.outcome->cache_fault) warn_of_cache(*line.outcome->cache_fault);
     }
     if (!run_.json) return;
     fmt::print("{}\n", line_of(to_json(line)));
     static_cast<void>(std::fflush(stdout));  // a run that is killed has said what it did
-  }
-
-  // Once: what fails for one output does for all.
-  void warn_of_cache(const Error& fault) {
-    if (!std::exchange(has_warned_of_cache_, true)) warn("--cache: " + fault.detail);
   }
 
   [[nodiscard]] Json to_json(const Line& line) const {
@@ -220,7 +215,6 @@ class Run {
   StepPrinter steps_;
   Counts counts_;
   std::size_t of_others_ = 0;  // jobs of other shards
-  bool has_warned_of_cache_ = false;
   std::atomic<bool> has_failed_ = false;
 };
 

@@ -69,12 +69,13 @@ void declare_farm_options(Command& command, FarmArguments& arguments) {
       ->needs(manifest);
   Option* const cache = arguments.cache_option = command.add_file(
       "--cache", arguments.cache, Values::kFolders,
-      "A folder of outputs by their keys, for any number of processes: what it has is not cooked "
-      "again");
-  command
-      .add_option("--cache-size", arguments.cache_size,
-                  "What was used longest ago is removed beyond this")
-      ->group(kRareOptions)
+      "Outputs by their keys, for any number of processes: what is there is not cooked again. A "
+      "folder, or a server that speaks the HTTP protocol of Bazel's remote caches, http://HOST");
+  cache->type_name("FOLDER|URL");
+  Option* const cache_size = arguments.cache_size_option =
+      command.add_option("--cache-size", arguments.cache_size,
+                         "What was used longest ago is removed beyond this from the folder");
+  cache_size->group(kRareOptions)
       ->type_name("BYTES")
       ->check(byte_size_fault)
       ->shows_default()

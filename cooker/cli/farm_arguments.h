@@ -15,7 +15,7 @@ namespace boxtree::cooker {
 struct FarmArguments {
   std::filesystem::path manifest;
   std::filesystem::path journal;
-  std::filesystem::path cache;
+  std::string cache;  // a folder or a URL
   std::string shard = "0/1";
   std::string memory;
   std::string cache_size = "10G";
@@ -25,6 +25,7 @@ struct FarmArguments {
 
   Option* manifest_option = nullptr;
   Option* cache_option = nullptr;
+  Option* cache_size_option = nullptr;
 };
 
 /// Adds --manifest.

@@ -41,6 +41,11 @@ void warn_all(const std::string& report, const std::string& place) {
   }
 }
 
+void warn_of_cache(const CookCache* cache) {
+  if (cache == nullptr) return;
+  for (const std::string& warning : cache->take_warnings()) warn("--cache: " + warning);
+}
+
 Error error_of_job() {
   try {
     throw;

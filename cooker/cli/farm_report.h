@@ -19,6 +19,9 @@ namespace boxtree::cooker {
 /// Prints them as warnings; each begins with `place`, if it is not empty.
 void warn_all(const std::string& report, const std::string& place = "");
 
+/// Prints what is new of take_warnings() as warnings. Null: there is no cache.
+void warn_of_cache(const CookCache* cache);
+
 /// The error of a job that ended with an exception, as main() has it for a whole program.
 /// Precondition: called in a handler.
 [[nodiscard]] Error error_of_job();

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A folder of cooked files by their keys, shared by as many processes as like to.
+// Cooked files by their keys, in a place that many processes share.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <boxtree/error.h>
 
@@ -13,13 +16,9 @@
 
 namespace boxtree::cooker {
 
-/// Two kinds of files, as in Bazel's caches: ac/KK/KEY is an entry, which says which output a key
-/// has, and cas/DD/DIGEST is an output, under the SHA-256 of its bytes. KK and DD are the first two
-/// digits. Files appear whole (rename) and are never changed; whoever reads one that is removed
-/// still has it. An entry that is damaged, or whose output is missing or has other bytes than its
-/// name says, is none. So no lock is needed but for the size, and nothing is synced to the disk.
-/// This is of damage, not of intent: who can write into the folder decides what a key gives. Safe
-/// for several threads.
+/// What a key gives is verified before it is used: a cache that is damaged, full or not there costs
+/// time, and never a byte of an output. This is of damage, not of intent: who can write into a
+/// cache decides what a key gives. Safe for several threads.
 class CookCache {
  public:
   struct Entry {
@@ -28,31 +27,58 @@ class CookCache {
     std::string report;       // what the cook had to say of it
   };
 
-  /// Makes the folder if it is not there. `most_bytes`: of all files together. Error: kWriteFailed.
-  static Result<CookCache> open(const std::filesystem::path& folder, std::uint64_t most_bytes);
+  CookCache(CookCache&&) noexcept = default;
+  CookCache& operator=(CookCache&&) = delete;
+  CookCache(const CookCache&) = delete;
+  CookCache& operator=(const CookCache&) = delete;
+  virtual ~CookCache() = default;
 
   /// The entry of a key, if there is one, with its output written to `output`, which is replaced as
-  /// AtomicFile does unless it has these bytes already. Both become the most recently used. Error:
-  /// kWriteFailed for the output; whatever is wrong with the cache is a miss.
+  /// AtomicFile does unless it has these bytes already. Error: kWriteFailed for the output;
+  /// whatever is wrong with the cache is a miss.
   [[nodiscard]] Result<std::optional<Entry>> fetch(const Digest& key,
-                                                   const std::filesystem::path& output) const;
+                                                   const std::filesystem::path& output) const {
+    return find(key, output);
+  }
 
-  /// Stores a cooked file under its key, in place of what is there. Then removes the least recently
-  /// used files, if all together have more than `most_bytes`, until they have nine tenths of it.
-  /// The entry. Errors: kWriteFailed; kFileUnreadable.
+  /// Stores a cooked file under its key, in place of what is there. The entry. Errors: kWriteFailed
+  /// if the cache does not take it; those of read_chunks for the output.
   Result<Entry> store(const Digest& key, const std::filesystem::path& output,
                       const std::string& report) const;
 
+  /// What has gone wrong since the last call, for people: the first fault of the cache's life, and
+  /// what it does about many. Later faults of the same kind cost the same and are not told.
+  [[nodiscard]] std::vector<std::string> take_warnings() const;
+
+ protected:
+  CookCache() = default;
+
+  [[nodiscard]] virtual Result<std::optional<Entry>> find(
+      const Digest& key, const std::filesystem::path& output) const = 0;
+  virtual Result<Entry> keep(const Digest& key, const std::filesystem::path& output,
+                             const std::string& report) const = 0;
+
+  /// Makes a fault a warning if it is the first one.
+  void note(const Error& fault) const;
+  void warn(std::string warning) const;
+
  private:
-  CookCache(std::filesystem::path folder, std::uint64_t most_bytes)
-      : folder_(std::move(folder)), most_bytes_(most_bytes) {}
-
-  [[nodiscard]] std::filesystem::path entry_path(const Digest& key) const;
-  [[nodiscard]] std::filesystem::path output_path(const Digest& output) const;
-  [[nodiscard]] std::optional<Entry> read_entry(const Digest& key) const;
-
-  std::filesystem::path folder_;
-  std::uint64_t most_bytes_;
+  struct Warnings {
+    std::mutex mutex;  // of the others
+    std::vector<std::string> texts;
+    bool has_fault = false;
+  };
+  std::unique_ptr<Warnings> warnings_ = std::make_unique<Warnings>();
 };
+
+/// Whether a file has the bytes that an entry is of.
+[[nodiscard]] bool has_output(const std::filesystem::path& file, const CookCache::Entry& entry);
+
+/// Whether the name of a cache is a URL and not that of a folder: it begins with letters and "://".
+[[nodiscard]] bool is_url(const std::string& place);
+
+/// Opens the cache of that name: a URL for an HttpCache, else a folder for a FolderCache, which
+/// keeps to `most_bytes`. Errors: those of their open().
+Result<std::unique_ptr<CookCache>> open_cache(const std::string& place, std::uint64_t most_bytes);
 
 }  // namespace boxtree::cooker

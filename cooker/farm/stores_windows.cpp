@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// In place of the cache and the journal, which other processes are kept from by locks of POSIX.
-// Compiled elsewhere, this is nothing.
+// In place of the folder cache and the journal, which other processes are kept from by locks of
+// POSIX. Compiled elsewhere, this is nothing.
 #ifdef _WIN32
-#include "cooker/farm/cook_cache.h"
+#include "cooker/farm/folder_cache.h"
 #include "cooker/farm/journal.h"
 
 namespace boxtree::cooker {
@@ -15,19 +15,19 @@ Error unsupported(const char* what) {
 
 }  // namespace
 
-Result<CookCache> CookCache::open(const std::filesystem::path& /*folder*/,
-                                  std::uint64_t /*most_bytes*/) {
+Result<FolderCache> FolderCache::open(const std::filesystem::path& /*folder*/,
+                                      std::uint64_t /*most_bytes*/) {
   return unsupported("caches");
 }
 
-Result<std::optional<CookCache::Entry>> CookCache::fetch(
+Result<std::optional<CookCache::Entry>> FolderCache::find(
     const Digest& /*key*/, const std::filesystem::path& /*output*/) const {
   return unsupported("caches");
 }
 
-Result<CookCache::Entry> CookCache::store(const Digest& /*key*/,
-                                          const std::filesystem::path& /*output*/,
-                                          const std::string& /*report*/) const {
+Result<CookCache::Entry> FolderCache::keep(const Digest& /*key*/,
+                                           const std::filesystem::path& /*output*/,
+                                           const std::string& /*report*/) const {
   return unsupported("caches");
 }
 

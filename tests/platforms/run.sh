@@ -10,7 +10,7 @@
 #                scalar: without vectors; sse4, avx512: walks by other vectors; O0, clang, libcxx: other compilers and libraries;
 #                windows: x86-64 under Wine, the interface in C; windows-cli: the command line there, compared with
 #                this machine's; windows-suites: tests there; arm64, armhf, riscv64, i386: under qemu or as they are;
-#                wasm: under Node; farm: no queries, but cooks by Bazel and by Slurm (tests/farm)
+#                wasm: under Node; farm: no queries, but cooks by a cache on a server, by Bazel and by Slurm (tests/farm)
 # Environment: BOXTREE_BUILD, where boxtree is built, whose command line cooks [build]
 # shellcheck disable=SC2317 # platforms are called by name
 set -euo pipefail
@@ -244,7 +244,7 @@ platform_i386() { emulated i386 i686 i686-linux-gnu g++-i686-linux-gnu ""; }
 platform_farm() {
   install_missing bazel-bootstrap nginx-light libnginx-mod-http-dav-ext slurm-wlm munge
   local engine
-  for engine in bazel slurm; do
+  for engine in http bazel slurm; do
     if "$source/tests/farm/${engine}_test.sh" "$build/boxtree" >"$work/$engine.log" 2>&1; then
       echo "PASS farm $(tail -n 1 "$work/$engine.log")"
     else

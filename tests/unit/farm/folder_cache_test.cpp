@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A cache gives the bytes that were stored, or nothing: every way of damage, many threads and
 // processes at once, and the size.
-#include "cooker/farm/cook_cache.h"
+#include "cooker/farm/folder_cache.h"
 
 #include <atomic>
 #include <chrono>
@@ -57,9 +57,9 @@ std::string fetched(const CookCache& cache, const Digest& key, const test::TempF
   return bytes;
 }
 
-TEST(CookCache, GivesBackWhatWasStored) {
+TEST(FolderCache, GivesBackWhatWasStored) {
   const test::TempFolder folder;
-  const CookCache cache = require(CookCache::open(folder.path() / "c", kRoom));
+  const FolderCache cache = require(FolderCache::open(folder.path() / "c", kRoom));
   EXPECT_EQ(fetched(cache, kKey, folder), "none");
   const auto stored = require(cache.store(kKey, folder.write("o", "bytes"), "[\"a report\"]"));
   EXPECT_EQ(stored.output, sha256_of("bytes"));
@@ -69,14 +69,14 @@ TEST(CookCache, GivesBackWhatWasStored) {
   EXPECT_EQ(entry->report, "[\"a report\"]");
   EXPECT_EQ(fetched(cache, sha256_of("other"), folder), "none");
   // Another process, later.
-  EXPECT_EQ(fetched(require(CookCache::open(folder.path() / "c", kRoom)), kKey, folder), "bytes");
+  EXPECT_EQ(fetched(require(FolderCache::open(folder.path() / "c", kRoom)), kKey, folder), "bytes");
   ASSERT_TRUE(cache.store(kKey, folder.write("o", "newer"), ""));
   EXPECT_EQ(fetched(cache, kKey, folder), "newer");
 }
 
-TEST(CookCache, LeavesAnOutputAloneThatHasTheBytesAlready) {
+TEST(FolderCache, LeavesAnOutputAloneThatHasTheBytesAlready) {
   const test::TempFolder folder;
-  const CookCache cache = require(CookCache::open(folder.path() / "c", kRoom));
+  const FolderCache cache = require(FolderCache::open(folder.path() / "c", kRoom));
   const fs::path output = folder.write("o", "bytes");
   ASSERT_TRUE(cache.store(kKey, output, ""));
   const auto before = fs::file_time_type::clock::now() - std::chrono::hours(1);
@@ -90,9 +90,9 @@ TEST(CookCache, LeavesAnOutputAloneThatHasTheBytesAlready) {
 
 // Each byte of each file of the cache changed, and each file cut short everywhere, longer, empty,
 // and away.
-TEST(CookCache, DamageIsAMissAndIsReplaced) {
+TEST(FolderCache, DamageIsAMissAndIsReplaced) {
   const test::TempFolder folder;
-  const CookCache cache = require(CookCache::open(folder.path() / "c", kRoom));
+  const FolderCache cache = require(FolderCache::open(folder.path() / "c", kRoom));
   const fs::path output = folder.write("o", "some bytes of a cooked file");
   ASSERT_TRUE(cache.store(kKey, output, "[]"));
   const std::string good = test::read_text(output);
@@ -122,9 +122,9 @@ TEST(CookCache, DamageIsAMissAndIsReplaced) {
 }
 
 // A valid entry that somebody put under another key.
-TEST(CookCache, AnEntryOfAnotherKeyIsNone) {
+TEST(FolderCache, AnEntryOfAnotherKeyIsNone) {
   const test::TempFolder folder;
-  const CookCache cache = require(CookCache::open(folder.path() / "c", kRoom));
+  const FolderCache cache = require(FolderCache::open(folder.path() / "c", kRoom));
   ASSERT_TRUE(cache.store(kKey, folder.write("o", "bytes"), ""));
   const Digest other = sha256_of("other");
   const fs::path from = files_in(folder.path() / "c" / "ac").front();
@@ -132,10 +132,10 @@ TEST(CookCache, AnEntryOfAnotherKeyIsNone) {
   EXPECT_EQ(fetched(cache, other, folder), "none");
 }
 
-TEST(CookCache, KeepsToItsSizeAndTheLeastRecentlyUsedGoFirst) {
+TEST(FolderCache, KeepsToItsSizeAndTheLeastRecentlyUsedGoFirst) {
   const test::TempFolder folder;
   constexpr std::uint64_t kMost = 40000;
-  const CookCache cache = require(CookCache::open(folder.path() / "c", kMost));
+  const FolderCache cache = require(FolderCache::open(folder.path() / "c", kMost));
   const auto key_of = [](int i) { return sha256_of("key" + std::to_string(i)); };
   const auto bytes_of = [](int i) { return std::string(1500, 'x') + std::to_string(i); };
   const auto start = fs::file_time_type::clock::now() - std::chrono::hours(24);
@@ -156,10 +156,10 @@ TEST(CookCache, KeepsToItsSizeAndTheLeastRecentlyUsedGoFirst) {
   EXPECT_GT(bytes_in(folder.path() / "c"), kMost / 2);
 }
 
-TEST(CookCache, ADamagedCountIsCountedAnew) {
+TEST(FolderCache, ADamagedCountIsCountedAnew) {
   const test::TempFolder folder;
   constexpr std::uint64_t kMost = 40000;
-  const CookCache cache = require(CookCache::open(folder.path() / "c", kMost));
+  const FolderCache cache = require(FolderCache::open(folder.path() / "c", kMost));
   for (const char* count : {"", "x", "12", "99999999999999999999999\n", "-5\n"}) {
     for (int i = 0; i < 30; ++i) {
       folder.write("c/size", count);
@@ -171,11 +171,11 @@ TEST(CookCache, ADamagedCountIsCountedAnew) {
   }
 }
 
-TEST(CookCache, SaysWhereItCannotBe) {
+TEST(FolderCache, SaysWhereItCannotBe) {
   const test::TempFolder folder;
   folder.write("file", "");
-  EXPECT_EQ(CookCache::open(folder.path() / "file" / "c", kRoom).code(), Errc::kWriteFailed);
-  const CookCache cache = require(CookCache::open(folder.path() / "c", kRoom));
+  EXPECT_EQ(FolderCache::open(folder.path() / "file" / "c", kRoom).code(), Errc::kWriteFailed);
+  const FolderCache cache = require(FolderCache::open(folder.path() / "c", kRoom));
   EXPECT_EQ(cache.store(kKey, folder.path() / "absent", "").code(), Errc::kFileNotFound);
   ASSERT_TRUE(cache.store(kKey, folder.write("o", "bytes"), ""));
   EXPECT_EQ(cache.fetch(kKey, folder.path() / "absent" / "o").code(), Errc::kWriteFailed);
@@ -185,11 +185,11 @@ TEST(CookCache, SaysWhereItCannotBe) {
 
 // Processes and threads that store, fetch and remove the same few keys at once: each fetch gives
 // what the key stands for, or nothing.
-TEST(CookCache, IsSafeForManyAtOnce) {
+TEST(FolderCache, IsSafeForManyAtOnce) {
   const test::TempFolder folder;
   constexpr std::uint64_t kMost = 12000;  // a few entries, so that they are removed all the time
   const auto work = [&](int seed) {
-    const CookCache cache = require(CookCache::open(folder.path() / "c", kMost));
+    const FolderCache cache = require(FolderCache::open(folder.path() / "c", kMost));
     for (int i = 0; i < 150; ++i) {
       const std::string name = std::to_string((i * 7 + seed) % 10);
       const std::string bytes = std::string(2000, name[0]);
