@@ -1,5 +1,5 @@
 # boxtree_add_cooked_assets(TARGET target MESHES mesh... [OPTIONS option...] [OUTPUT_DIR dir]
-#                           [DEFINITION name])
+#                           [DEFINITION name] [CACHE dir|url])
 #
 # Cooks each mesh into OUTPUT_DIR/NAME.bxt before `target`, or what links it, is built. A depfile lists
 # every file that a mesh refers to: touching one recooks just the meshes that read it.
@@ -9,6 +9,8 @@
 #   OUTPUT_DIR  [default: the current binary directory, which a relative one is below]
 #   DEFINITION  compile definition by which sources know OUTPUT_DIR [default: BOXTREE_ASSET_DIR]; INTERFACE
 #               of an INTERFACE library, otherwise PRIVATE
+#   CACHE       folder or URL for `boxtree cook --cache`, OFF for none; a relative folder is below the current binary
+#               directory [default: the variable BOXTREE_CACHE]
 #
 # May be called again for the same target. Targets that want the same mesh in the same OUTPUT_DIR with
 # the same OPTIONS share the file.
@@ -87,14 +89,14 @@ endfunction()
 # Ends with WHY, a sentence, and how to call the function.
 function(boxtree_refuse_call why)
   message(FATAL_ERROR "boxtree_add_cooked_assets: ${why} Expected boxtree_add_cooked_assets(TARGET target MESHES mesh... "
-                      "[OPTIONS option...] [OUTPUT_DIR dir] [DEFINITION name])")
+                      "[OPTIONS option...] [OUTPUT_DIR dir] [DEFINITION name] [CACHE dir|url])")
 endfunction()
 
 # Sets RESULT to the keyword that begins as WORD does, by three letters or more, or to nothing.
 function(boxtree_nearest_keyword result word)
   set(nearest)
   set(most 2)
-  foreach(keyword TARGET MESHES OPTIONS OUTPUT_DIR DEFINITION)
+  foreach(keyword TARGET MESHES OPTIONS OUTPUT_DIR DEFINITION CACHE)
     string(LENGTH ${keyword} length)
     while(length GREATER most)
       string(SUBSTRING ${keyword} 0 ${length} start)
@@ -114,7 +116,7 @@ endfunction()
 function(boxtree_refuse_unknown_keywords list values)
   foreach(value IN LISTS values)
     string(TOUPPER "${value}" upper)
-    if(NOT value STREQUAL upper AND upper MATCHES "^(TARGET|MESHES|OPTIONS|OUTPUT_DIR|DEFINITION)$")
+    if(NOT value STREQUAL upper AND upper MATCHES "^(TARGET|MESHES|OPTIONS|OUTPUT_DIR|DEFINITION|CACHE)$")
       boxtree_refuse_call("'${value}' in ${list} is no keyword; did you mean ${upper}?")
     endif()
     if(NOT value MATCHES "^[A-Z][A-Z_]+$")
@@ -130,7 +132,7 @@ function(boxtree_refuse_unknown_keywords list values)
 endfunction()
 
 function(boxtree_add_cooked_assets)
-  cmake_parse_arguments(PARSE_ARGV 0 ARG "" "TARGET;OUTPUT_DIR;DEFINITION" "MESHES;OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 0 ARG "" "TARGET;OUTPUT_DIR;DEFINITION;CACHE" "MESHES;OPTIONS")
   boxtree_refuse_unknown_keywords(MESHES "${ARG_MESHES}")
   boxtree_refuse_unknown_keywords(OPTIONS "${ARG_OPTIONS}")
   if(ARG_UNPARSED_ARGUMENTS)
@@ -171,11 +173,25 @@ function(boxtree_add_cooked_assets)
       message(FATAL_ERROR "boxtree_add_cooked_assets: OPTIONS has '${option}', but the function names what it writes: "
                           "NAME.bxt and NAME.bxt.d in OUTPUT_DIR")
     endif()
+    if(option MATCHES "^--cache(=|$)")
+      boxtree_refuse_call("OPTIONS has '${option}'; did you mean CACHE?")
+    endif()
   endforeach()
   # Builds run several cooks at once, each of which would take all processors.
   set(jobs --jobs 1)
   if(ARG_OPTIONS MATCHES "(^|;)(-j|--jobs)")
     set(jobs)
+  endif()
+  # Bytes do not depend on it, so that targets with and without share files.
+  if(NOT DEFINED ARG_CACHE)
+    set(ARG_CACHE ${BOXTREE_CACHE})
+  endif()
+  set(cache)
+  if(ARG_CACHE MATCHES "^[A-Za-z]+://")
+    set(cache --cache ${ARG_CACHE})
+  elseif(ARG_CACHE)
+    get_filename_component(cache "${ARG_CACHE}" ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
+    set(cache --cache ${cache})
   endif()
   get_filename_component(dir "${ARG_OUTPUT_DIR}" ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
   boxtree_find_tool(tool)
@@ -223,7 +239,7 @@ function(boxtree_add_cooked_assets)
     cmake_language(EVAL CODE "cmake_language(DEFER CALL boxtree_expect_mesh [[${mesh}]])")
     add_custom_command(
       OUTPUT ${output}
-      COMMAND ${tool} cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${jobs} ${ARG_OPTIONS}
+      COMMAND ${tool} cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${jobs} ${cache} ${ARG_OPTIONS}
       DEPENDS ${mesh} ${tool}
       DEPFILE ${output}.d
       COMMENT "Cooking ${title}"

@@ -10,7 +10,7 @@ BUILD_PACKAGES="g++ cmake make ninja-build libeigen3-dev libassimp-dev libdraco-
   libhwy-dev libtomlplusplus-dev"
 SAMPLE_PACKAGES="glmark2-data assimp-testmodels"
 TEST_PACKAGES="libgtest-dev libcgal-dev libgmp-dev locales jq python3-xxhash chromium doxygen python3-pil fonts-dejavu-core
-  dpkg-dev file groff-base man-db mandoc zsh fish abigail-tools"
+  dpkg-dev file parallel groff-base man-db mandoc zsh fish abigail-tools"
 # Libraries that boxtree_peers measures beside ours.
 PEER_PACKAGES="libembree-dev libbullet-dev libfcl-dev libode-dev"
 # Other compilers, standard libraries and machines, for tests/same_bytes/compare_builds.sh.

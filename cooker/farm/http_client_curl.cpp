@@ -89,8 +89,8 @@ Result<const Libcurl*> load() {
 // Handles of libcurl that no thread uses now: each keeps its connections.
 struct HttpClient::Handles {
   Handles(const Libcurl& library, const HttpLimits& waits) : curl(library), limits(waits) {
-    headers = curl.slist_append(nullptr,
-                                "Expect:");  // sends a body without waiting for a server to want it
+    // Else a server would first be told of a body, and given a second to refuse it.
+    headers = curl.slist_append(nullptr, "Expect:");
     if (headers == nullptr) throw std::bad_alloc();
   }
   Handles(const Handles&) = delete;

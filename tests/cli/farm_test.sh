@@ -271,6 +271,38 @@ expect 0 "$boxtree" cook --manifest levels.jsonl --jobs 8 --quiet
 expect 0 "$boxtree" cook in/level7.gltf -o level_single.bxt --quiet
 cmp level7.bxt level_single.bxt
 
+# make and ninja with a cache, by the rules of docs/FARM.md: what is away is taken from it, with the depfile of a cook, and what an
+# input refers to still cooks anew. GNU parallel, where it is installed.
+mkdir built
+printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >built/a.obj
+echo 'newmtl a' >built/m.mtl
+cd built
+printf 'a.bxt: a.obj\n\t"%s" cook $< -o $@ --depfile $@.d --jobs 1 --json --cache ../built.cache\n-include a.bxt.d\n' "$boxtree" >Makefile
+# shellcheck disable=SC2016 # variables of ninja
+printf 'rule cook\n  command = "%s" cook $in -o $out --depfile $out.d --jobs 1 --json --cache ../built.cache\n  depfile = $out.d\n  deps = gcc\nbuild a.bxt: cook a.obj\n' \
+  "$boxtree" >build.ninja
+cached_by() { expect 0 "$@"; sed -n 's/.*"cached": *\([a-z]*\).*/\1/p' out; }
+same "$(cached_by make)" false
+cp a.bxt.d cooked.d
+for engine in make "ninja -v"; do
+  rm -f a.bxt a.bxt.d
+  # shellcheck disable=SC2086 # words
+  same "$(cached_by $engine)" true
+  [ ! -e a.bxt.d ] || cmp a.bxt.d cooked.d
+  # shellcheck disable=SC2086
+  same "$(cached_by $engine)" ""
+  sleep 0.02
+  echo "# for $engine" >>m.mtl
+  # shellcheck disable=SC2086
+  same "$(cached_by $engine)" false
+done
+cd ..
+if parallel --version >version 2>/dev/null && grep -q '^GNU parallel' version; then
+  mkdir side
+  expect 0 parallel --will-cite "$boxtree" cook "{}" -o "side/{/.}.bxt" --jobs 1 --quiet --cache side.cache ::: in/m[0-9].obj in/m1[0-9].obj in/m2[0-4].obj
+  same_as_single side
+fi
+
 # Response files: one word a line.
 printf 'in/m1.obj\n\n-o\ntwo words.bxt\n' >words
 expect 0 "$boxtree" cook @words --quiet

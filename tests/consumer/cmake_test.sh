@@ -98,6 +98,32 @@ for generator in Ninja "Unix Makefiles"; do # another option cooks again, and ju
   [ "$(grep -c Cooking "$work/log")" = 1 ] || fail "$generator: another option recooked all"
 done
 
+# A cache: another build folder cooks nothing, by the variable or by CACHE, and depfiles are those of cooks.
+project cached CXX <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(plain)
+boxtree_add_cooked_assets(TARGET plain MESHES ../meshes/level.obj)
+add_custom_target(named)
+boxtree_add_cooked_assets(TARGET named MESHES ../meshes/level.obj OUTPUT_DIR named CACHE own)
+add_custom_target(none)
+boxtree_add_cooked_assets(TARGET none MESHES ../meshes/crate.obj OUTPUT_DIR none CACHE OFF)
+CMAKE
+out=$work/cached/build
+entries() { find "$1/ac" -type f 2>/dev/null | wc -l; }
+for round in 1 2; do
+  rm -rf "$out/level.bxt" "$out/none"
+  configured cached -DBOXTREE_CACHE="$work/shared cache"
+  quiet cmake --build "$out" --target plain named none
+  [ "$(entries "$work/shared cache")" = 1 ] || fail "BOXTREE_CACHE: $(entries "$work/shared cache") entries in round $round"
+  [ "$(entries "$out/own")" = 1 ] || fail "CACHE is not the folder below the build"
+  cmp "$out/level.bxt" "$out/named/level.bxt"
+  cmp "$out/level.bxt.d" <(sed 's|/named/|/|' "$out/named/level.bxt.d") || fail "the depfile of a hit is another"
+done
+ninja -C "$out" -t commands level.bxt | grep -q -- '--cache' || fail "no cache in the command"
+if ninja -C "$out" -t commands none/crate.bxt | grep -q -- '--cache'; then fail "CACHE OFF is not none"; fi
+configured cached -DBOXTREE_CACHE=http://host:8080/x
+ninja -C "$out" -t commands level.bxt | grep -q -- '--cache http://host:8080/x ' || fail "a URL is taken for a folder"
+
 # The command of GUIDE.md for a profile that says itself what to cook: once, and again if a mesh of it changes.
 mkdir "$work/listed"
 cp "$work/meshes"/* "$work/listed"
@@ -194,6 +220,7 @@ refused_call "'output_dir' in OPTIONS is no keyword; did you mean OUTPUT_DIR?" \
   TARGET all_assets MESHES ../meshes/level.obj OPTIONS --exact output_dir other
 refused_call "'OUTPUT_DIRECTORY' in MESHES is no keyword; did you mean OUTPUT_DIR?" \
   TARGET all_assets MESHES ../meshes/level.obj OUTPUT_DIRECTORY other
+refused_call "OPTIONS has '--cache'; did you mean CACHE?" TARGET all_assets MESHES ../meshes/level.obj OPTIONS --cache own
 refused_call "'OUTDIR' in OPTIONS is no keyword; did you mean OUTPUT_DIR?" \
   TARGET all_assets MESHES ../meshes/level.obj OPTIONS --exact OUTDIR other
 refused_call "'DEPENDS' in MESHES is neither a keyword nor the name of a mesh" \
