@@ -9,7 +9,7 @@ that bytes of a cooked file depend on, which are shared ones. Bazel reads those 
 """
 
 _NOT_FOUND = """boxtree_tool(name = "{name}"): no program `boxtree`; expected the attribute `path`, the environment \
-variable BOXTREE_TOOL, or a folder of PATH with it. See "Install" in the README of boxtree."""
+variable BOXTREE_TOOL, or a folder of PATH with it. See "Start" in the README of boxtree."""
 
 _DOES_NOT_RUN = """boxtree_tool(name = "{name}"): `{program} --version` ends with status {status}: {error}"""
 

@@ -58,7 +58,7 @@ constexpr std::array kTable = {
              "the mesh given is not the one the tree was cooked from", 3},
     ErrcInfo{Errc::kTreeIndex, "tree_index", "no tree with this number in the file", 1},
     ErrcInfo{Errc::kNoScene, "no_scene",
-             "the file holds trees but no scene; Tree::bind() binds a tree", 1},
+             "the file holds trees but no scene; bind one of its trees", 1},
     ErrcInfo{Errc::kInstanceIndex, "instance_index", "no instance with this number in the scene",
              1},
     ErrcInfo{Errc::kInstanceStatic, "instance_static",

@@ -60,7 +60,7 @@ enum class Errc : std::uint16_t {
   kExternalMeshNeeded = 53,
   kExternalMeshMismatch = 54,  ///< The mesh given is not the one the tree was cooked from.
   kTreeIndex = 55,             ///< No tree with this number in the file.
-  kNoScene = 56,               ///< The file holds trees but no scene; Tree::bind() binds a tree.
+  kNoScene = 56,               ///< The file holds trees but no scene; bind one of its trees.
   kInstanceIndex = 57,         ///< No instance with this number in the scene.
   /// An instance that was bound as static cannot be moved; make_movable() allows it.
   kInstanceStatic = 58,

@@ -406,7 +406,7 @@ TEST(SceneBind, ScenesWithoutAnythingAtRestOrWithoutSceneAreTold) {
   const std::vector<std::byte> bytes = test::cook_bytes(test::sphere(4, 4), CodecId::kWide8);
   const File plain = require(File::open(bytes));
   EXPECT_EQ(Scene::bind(plain).error().message(),
-            "no_scene: the file holds trees but no scene; Tree::bind() binds a tree");
+            "no_scene: the file holds trees but no scene; bind one of its trees");
 }
 
 // Each byte of the scene's sections changed, with checksums made right again: refused, found by the
