@@ -288,9 +288,11 @@ class Measurement {
     return point;
   }
 
-  // The encoded tree of a candidate, in memory that the next candidate reuses.
+  // The encoded tree of a candidate, in memory that the next candidate reuses. Without a name, as
+  // `cook --strip` writes it.
   static EncodedTree& assemble(TriedTree& tried, std::size_t candidate) {
     EncodedTree& tree = tried.families[tried.nodes[candidate].family];
+    tree.name.clear();
     tree.nodes = std::move(tried.nodes[candidate].nodes);
     return tree;
   }

@@ -253,7 +253,8 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   section.notes = fmt::format(
       "Every encoding gives the same answers as brute force over its own geometry; on a grid that "
       "geometry is rounded. Sizes are those of whole files with face ids, as the commands make "
-      "them; without --strip a file also holds the record of its cook, some 0.3 KB. Without face "
+      "them; without --strip a file also holds the record of its cook, some 0.3 KB, and the name "
+      "of its mesh. Without face "
       "ids, nodes and geometry alone, is the figure \"with geometry\" of boxtree cook. "
       "Unless told a codec, boxtree cook{}{} chooses by counted work, the same on every machine: "
       "{}. "

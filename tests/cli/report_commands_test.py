@@ -54,8 +54,9 @@ def check(boxtree, mesh, *options):
         assert (made["codec"], made["geometry"]) == (codec, store), (mesh, roles, command, made)
         assert os.path.getsize("made.bxt") == int(size), (mesh, roles, command, os.path.getsize("made.bxt"), size)
         run(boxtree, *(word for word in arguments if word != "--strip"), "-q")
-        record = f"{(os.path.getsize('made.bxt') - int(size)) / 1000:.1f}"
-        assert f"the record of its cook, some {record} KB." in page, (mesh, record)
+        sections = json.loads(run(boxtree, "info", "made.bxt", "--json"))["sections"]
+        record, = [16 + section["bytes"] for section in sections if section["kind"] == "cook_record"]
+        assert f"the record of its cook, some {record / 1000:.1f} KB, and the name of its mesh." in page, (mesh, record)
         assert each == f"{int(size) / made['triangles']:.2f}", (each, size, made["triangles"])
         is_exact = store in ("arrays", "exact")
         assert is_exact or f"--grid-bits {bits}" in command, command
