@@ -29,6 +29,7 @@
 #include "cooker/import/gltf_faces.h"
 #include "cooker/import/gltf_positions.h"
 #include "cooker/import/gltf_primitives.h"
+#include "cooker/import/gltf_unread.h"
 #include "cooker/import/gltf_user_data.h"
 #include "cooker/import/node_graph.h"
 #include "cooker/import/recording_io.h"
@@ -189,9 +190,7 @@ Result<GltfFacts> check_gltf(const SourceFile& source, ImportReport& report) {
   Status status = check_required_extensions(*document);
   if (status.ok()) status = check_types(*document);
   if (!status.ok()) return in_file(source.title(), status.error());
-  if (const std::size_t nodes = count_instanced_nodes(*document); nodes > 0) {
-    report.unread.push_back({kInstancing, nodes, 0, kInstancingRemedy});
-  }
+  report.unread = unread_of_gltf(*document);
   return GltfFacts{stated_faces(*document), has_quantized_positions(*document)};
 }
 

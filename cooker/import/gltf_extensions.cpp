@@ -81,12 +81,4 @@ Status check_required_extensions(const Json& document) {
   return {};
 }
 
-std::size_t count_instanced_nodes(const Json& document) {
-  const Json& nodes = array_at(document, "nodes");
-  return static_cast<std::size_t>(std::count_if(nodes.begin(), nodes.end(), [](const Json& node) {
-    const auto extensions = node.find("extensions");
-    return extensions != node.end() && extensions->contains(kInstancing);
-  }));
-}
-
 }  // namespace boxtree::cooker

@@ -20,7 +20,4 @@ inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 inline constexpr const char* kInstancingRemedy =
     "write a node for each instance (gltfpack: without -mi)";
 
-/// Nodes with that.
-[[nodiscard]] std::size_t count_instanced_nodes(const nlohmann::json& document);
-
 }  // namespace boxtree::cooker

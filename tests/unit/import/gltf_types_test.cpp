@@ -10,7 +10,9 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "cooker/import/gltf_unread.h"
 #include "cooker/import/source_scene.h"
 #include "gltf_text.h"
 #include "temp_files.h"
@@ -215,6 +217,39 @@ TEST_F(GltfTypes, InstancesThatAreNotRead) {
   EXPECT_EQ(unread[0].what, "EXT_mesh_gpu_instancing");
   EXPECT_EQ(unread[0].count, 1u);
   EXPECT_EQ(unread[0].line, 0u);
+}
+
+// Found by a newcomer: what poses or shapes a mesh, and other scenes, were lost in silence.
+TEST_F(GltfTypes, SkinsWeightsAndScenesThatAreNotRead) {
+  Document document;
+  document.positions = bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 0);
+  const auto unread = [&] {
+    std::string all;
+    for (const Unread& part : load("a.gltf", document.text()).report.unread)
+      all += fmt::format("{} {};", part.what, part.count);
+    return all;
+  };
+  document.node = R"({"mesh":0,"weights":[0,0.5]})";
+  EXPECT_EQ(unread(), "weights of morph targets 1;");
+  document.node = R"({"mesh":0,"weights":[0,0.0]})";
+  EXPECT_EQ(unread(), "");
+  std::string text = document.text();
+  const std::string scenes = R"("scenes":[)";
+  text.insert(text.find(scenes) + scenes.size(), R"({"nodes":[0]},)");
+  const std::vector<Unread> of_scenes = load("a.gltf", text).report.unread;
+  ASSERT_EQ(of_scenes.size(), 1u);
+  EXPECT_EQ(of_scenes[0].what, "other scenes");
+  const auto of_text = [](const char* document) {
+    return unread_of_gltf(nlohmann::json::parse(document));
+  };
+  const std::vector<Unread> skins = of_text(R"({"nodes":[{"mesh":0,"skin":0},{"skin":0},7]})");
+  ASSERT_EQ(skins.size(), 1u);
+  EXPECT_EQ(skins[0].what, "skins");
+  EXPECT_EQ(skins[0].count, 1u);
+  for (const char* any : {"7", R"({"nodes":7,"meshes":{},"scenes":7})",
+                          R"({"meshes":[{"weights":["a",{}]},{"weights":7}]})"}) {
+    EXPECT_TRUE(of_text(any).empty()) << any;
+  }
 }
 
 // The document may hold anything.
