@@ -5,8 +5,6 @@
 #include <span>
 #include <system_error>
 
-#include <fmt/format.h>
-
 #include "cooker/import/whole_file.h"
 
 namespace boxtree::cooker {
@@ -34,8 +32,13 @@ Result<Digest> sha256_of_file(const std::filesystem::path& path) {
 }
 
 std::string hex_of(const Digest& digest) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
   std::string hex;
-  for (const std::byte byte : digest) hex += fmt::format("{:02x}", static_cast<unsigned>(byte));
+  hex.reserve(2 * digest.size());
+  for (const std::byte byte : digest) {
+    hex += kDigits[std::to_integer<std::size_t>(byte >> 4)];
+    hex += kDigits[std::to_integer<std::size_t>(byte & std::byte{15})];
+  }
   return hex;
 }
 

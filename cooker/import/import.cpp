@@ -217,7 +217,7 @@ bool has_node_graph(const fs::path& path) {
 }
 
 bool is_mesh_ending(std::string_view ending) {
-  const std::vector<std::string> endings = mesh_endings();
+  static const std::vector<std::string> endings = mesh_endings();
   return std::binary_search(endings.begin(), endings.end(), in_lower_case(ending));
 }
 
