@@ -111,6 +111,7 @@ int cook_through_cache(const Arguments& arguments, const CookCache& cache) {
   warn_of_cache(&cache);
   if (!outcome) return fail(explained(outcome.error(), job, job.output.string()));
   warn_all(outcome->report);
+  if (outcome->difference) return fail_by(*outcome->difference);
   const double seconds = seconds_since(start);
   if (arguments.json) {
     print(outcome_json(job.output.string(), key->key, *outcome, seconds));

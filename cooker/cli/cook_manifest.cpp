@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -61,6 +62,11 @@ struct Line {
   std::optional<Digest> key;
   std::optional<KeyedOutcome> outcome;
   Error error;
+  bool differs = false;  // the error is what an audit has found
+
+  [[nodiscard]] int status() const {
+    return differs ? kExitDifference : error_info(error.code).exit_status;
+  }
 };
 
 class Counts {
@@ -68,7 +74,7 @@ class Counts {
   void add(const Line& line) {
     if (!line.outcome) {
       ++failed_;
-      statuses_[static_cast<std::size_t>(error_info(line.error.code).exit_status)] = true;
+      statuses_[static_cast<std::size_t>(line.status())] = true;
       may_pass_ = may_pass_ || may_pass(line.error);
     } else {
       ++of_[static_cast<std::size_t>(line.outcome->how)];
@@ -77,8 +83,10 @@ class Counts {
 
   [[nodiscard]] std::size_t done() const { return of_[0] + of_[1] + of_[2] + failed_; }
 
-  // Errors that may pass come first: another run does their jobs.
+  // What an audit has found comes first: another run finds it no more. Then errors that may pass:
+  // another run does their jobs.
   [[nodiscard]] int exit_status() const {
+    if (statuses_[kExitDifference]) return kExitDifference;
     if (may_pass_) return kExitInputOutput;
     for (const int status : {kExitInternal, kExitBadInput, kExitUnsupported, kExitUsage}) {
       if (statuses_[static_cast<std::size_t>(status)]) return status;
@@ -96,25 +104,30 @@ class Counts {
  private:
   std::array<std::size_t, 3> of_{};  // by KeyedOutcome::How
   std::size_t failed_ = 0;
-  std::array<bool, kExitUnsupported + 1> statuses_{};
+  std::array<bool, kExitDifference + 1> statuses_{};
   bool may_pass_ = false;
 };
 
 class Run {
  public:
   Run(const ManifestRun& run, const ManifestJobs& jobs, const Shard& shard, Journal* journal)
-      : run_(run), jobs_(jobs), shard_(shard), steps_(!run.quiet) {
+      : run_(run), jobs_(jobs), steps_(!run.quiet) {
     stores_.cache = run.cache;
     stores_.journal = journal;
+    stores_.trusts_states = !run.farm.reread;
     stores_.audit_share = run.farm.audit;
     stores_.report = keyed_report;
+    for (std::size_t job = 0; job < jobs.size(); ++job) {
+      const Digest digest = sha256_of(jobs.line(job).output.string());
+      if (shard_of(digest, shard.count) == shard.number) ours_.push_back(job);
+    }
   }
 
   int work() {
     run_on_threads(run_.threads, [this] {
-      run_within({jobs_.size(), memory_of(run_.farm),
-                  [this](std::size_t job) { return estimated_memory(jobs_.job(job)); },
-                  [this](std::size_t job) { cook(job); },
+      run_within({ours_.size(), memory_of(run_.farm),
+                  [this](std::size_t i) { return estimated_memory(jobs_.job(ours_[i])); },
+                  [this](std::size_t i) { cook(ours_[i]); },
                   [this] { return run_.farm.fail_fast && has_failed_; }});
     });
     return counts_.exit_status();
@@ -130,47 +143,52 @@ class Run {
   void cook(std::size_t number) {
     const Clock::time_point start = Clock::now();
     Line line{number};
-    bool is_ours = true;
     try {
-      is_ours = cook_into(line);
+      cook_into(line);
     } catch (...) {
       line.error = error_of_job();
     }
     line.seconds = seconds_since(start);
     const std::lock_guard lock(telling_);
-    if (is_ours) {
-      counts_.add(line);
-      tell(line);
-    } else {
-      ++of_others_;
-    }
+    counts_.add(line);
+    tell(line);
     show_progress();
   }
 
-  // False for a job of another shard. One without a key, since an input cannot be read, is told by
-  // one shard, too.
-  bool cook_into(Line& line) {
+  void cook_into(Line& line) {
     const CookJob job = jobs_.job(line.job);
-    const Result<JobKey> key = key_of(job);
+    const Result<JobKey> key = key_of_job(job);
     if (key) line.key = key->key;
-    const Digest digest = key ? key->key : sha256_of(job.output.string());
-    if (shard_of(digest, shard_.count) != shard_.number) return false;
     if (!key) {
       line.error = key.error();
-      return true;
+      return;
     }
     if (Status status = check_replaced(job.output, OutputKind::kCooked); !status) {
       line.error = status.error();
-      return true;
+      return;
     }
     Result<KeyedOutcome> outcome = cook_by_key(job, *key, stores_);
-    if (outcome) {
+    if (outcome && outcome->difference) {
+      line.error = *outcome->difference;
+      line.differs = true;
+    } else if (outcome) {
       line.outcome = std::move(*outcome);
       line.outcome->summary.reset();
     } else {
       line.error = explained(outcome.error(), job, job.output.string());
     }
-    return true;
+  }
+
+  // By what the journal remembers of the inputs if the output is there, too. Else by reading them:
+  // what is cooked, or taken from a cache, depends on bytes alone.
+  [[nodiscard]] Result<JobKey> key_of_job(const CookJob& job) const {
+    Journal* const journal = stores_.journal;
+    if (journal == nullptr || run_.farm.reread) return key_of(job);
+    bool is_remembered = false;
+    Result<JobKey> key =
+        key_of(job, [&](const fs::path& file) { return journal->digest_of(file, &is_remembered); });
+    if (key && is_remembered && !journal->find(job.output, key->key, true)) return key_of(job);
+    return key;
   }
 
   void tell(const Line& line) {
@@ -179,7 +197,12 @@ class Run {
     warn_of_cache(run_.cache);
     if (!line.outcome) {
       has_failed_ = true;
-      complain(in_file(place, line.error).message());
+      const Error error = in_file(place, line.error);
+      if (line.differs) {
+        static_cast<void>(fail_by(error));
+      } else {
+        complain(error.message());
+      }
     } else {
       warn_all(line.outcome->report, place);
     }
@@ -192,29 +215,29 @@ class Run {
     const ManifestLine& stated = jobs_.line(line.job);
     const std::string output = stated.output.string();
     Json json = {{"schema", kJsonSchema}, {"line", stated.line}};
-    json.update(line.outcome ? outcome_json(output, line.key, *line.outcome, line.seconds)
-                             : error_json(output, line.key, line.error, line.seconds));
+    json.update(line.outcome
+                    ? outcome_json(output, line.key, *line.outcome, line.seconds)
+                    : error_json(output, line.key, line.error, line.status(), line.seconds));
     return json;
   }
 
   void show_progress() {
-    const std::size_t done = counts_.done() + of_others_;  // this one at least
+    const std::size_t done = counts_.done();  // this one at least
     const double seconds = seconds_since(start_);
-    const double share = static_cast<double>(done) / static_cast<double>(jobs_.size());
-    steps_(fmt::format("{} of {} jobs, {:.0f} a second, {:.0f} s left", done, jobs_.size(),
+    const double share = static_cast<double>(done) / static_cast<double>(ours_.size());
+    steps_(fmt::format("{} of {} jobs, {:.0f} a second, {:.0f} s left", done, ours_.size(),
                        static_cast<double>(done) / seconds, seconds / share - seconds),
            share);
   }
 
   const ManifestRun& run_;
   const ManifestJobs& jobs_;
-  const Shard shard_;
+  std::vector<std::size_t> ours_;  // the jobs of this shard
   KeyedStores stores_;
   const Clock::time_point start_ = Clock::now();
   std::mutex telling_;  // of all below
   StepPrinter steps_;
   Counts counts_;
-  std::size_t of_others_ = 0;  // jobs of other shards
   std::atomic<bool> has_failed_ = false;
 };
 

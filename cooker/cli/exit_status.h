@@ -11,6 +11,7 @@ inline constexpr int kExitInputOutput = 2;
 inline constexpr int kExitBadInput = 3;
 inline constexpr int kExitInternal = 4;
 inline constexpr int kExitUnsupported = 5;
+inline constexpr int kExitDifference = 7;
 
 struct ExitStatus {
   int number;
@@ -27,6 +28,8 @@ inline constexpr std::array kExitStatuses = {
     ExitStatus{
         kExitUnsupported, "unsupported",
         "The file needs what this program, the format, or what was cooked into it, does not have."},
+    ExitStatus{kExitDifference, "difference",
+               "`cook --audit` has found other bytes in the cache than a cook makes."},
 };
 
 /// Statuses that are none of the program's, in the words of a manual.

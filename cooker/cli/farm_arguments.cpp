@@ -39,7 +39,7 @@ void declare_farm_options(Command& command, FarmArguments& arguments) {
   command
       .add_option(
           "--shard", arguments.shard,
-          "Only the jobs of a manifest whose keys fall to shard I of N, from 0: N such runs "
+          "Only the jobs of a manifest whose outputs fall to shard I of N, from 0: N such runs "
           "cook each job once")
       ->type_name("I/N")
       ->check(shard_fault)
@@ -65,6 +65,12 @@ void declare_farm_options(Command& command, FarmArguments& arguments) {
       .add_file("--journal", arguments.journal, Values::kFiles,
                 "Where it is written down which jobs of a manifest are finished, so that the same "
                 "command goes on after it was killed [beside the manifest, in .done]")
+      ->group(kRareOptions)
+      ->needs(manifest);
+  command
+      .add_flag("--reread", arguments.reread,
+                "Read all inputs and outputs of a manifest, also those whose size, times and inode "
+                "are those that the journal has")
       ->group(kRareOptions)
       ->needs(manifest);
   Option* const cache = arguments.cache_option = command.add_file(

@@ -21,6 +21,7 @@ struct FarmArguments {
   std::string cache_size = "10G";
   double audit = 0;
   bool keep_going = false;
+  bool reread = false;
   bool fail_fast = false;
 
   Option* manifest_option = nullptr;

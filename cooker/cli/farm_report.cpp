@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cooker/cli/cook_report.h"
+#include "cooker/cli/exit_status.h"
 #include "cooker/cli/output.h"
 
 namespace boxtree::cooker {
@@ -46,6 +47,11 @@ void warn_of_cache(const CookCache* cache) {
   for (const std::string& warning : cache->take_warnings()) warn("--cache: " + warning);
 }
 
+int fail_by(const Error& difference) {
+  complain("difference: " + difference.detail);
+  return kExitDifference;
+}
+
 Error error_of_job() {
   try {
     throw;
@@ -67,12 +73,12 @@ Json outcome_json(const std::string& output, const std::optional<Digest>& key,
 }
 
 Json error_json(const std::string& output, const std::optional<Digest>& key, const Error& error,
-                double seconds) {
+                int status, double seconds) {
   const ErrcInfo& info = error_info(error.code);
   Json json = job_json(output, key, seconds);
   json["error"] = {{"code", static_cast<unsigned>(error.code)},
                    {"name", info.name},
-                   {"status", info.exit_status},
+                   {"status", status},
                    {"may_pass", may_pass(error)},
                    {"detail", error.detail}};
   return json;

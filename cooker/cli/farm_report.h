@@ -22,6 +22,9 @@ void warn_all(const std::string& report, const std::string& place = "");
 /// Prints what is new of take_warnings() as warnings. Null: there is no cache.
 void warn_of_cache(const CookCache* cache);
 
+/// Prints what an audit has found. Its exit status.
+int fail_by(const Error& difference);
+
 /// The error of a job that ended with an exception, as main() has it for a whole program.
 /// Precondition: called in a handler.
 [[nodiscard]] Error error_of_job();
@@ -29,7 +32,8 @@ void warn_of_cache(const CookCache* cache);
 /// Of a job of that output: key, bytes, where they are from, and warnings.
 [[nodiscard]] Json outcome_json(const std::string& output, const std::optional<Digest>& key,
                                 const KeyedOutcome& outcome, double seconds);
+/// `status`: of a cook that ends with the error.
 [[nodiscard]] Json error_json(const std::string& output, const std::optional<Digest>& key,
-                              const Error& error, double seconds);
+                              const Error& error, int status, double seconds);
 
 }  // namespace boxtree::cooker

@@ -133,12 +133,12 @@ std::string key_text(const CookJob& job, const std::vector<KeyedFile>& files) {
   return text;
 }
 
-Result<JobKey> key_of(const CookJob& job) {
+Result<JobKey> key_of(const CookJob& job, const DigestOf& digest_of) {
   Result<std::vector<JobFile>> listed = list_job_files(job);
   if (!listed) return listed.error();
   JobKey key;
   for (JobFile& file : *listed) {
-    const Result<Digest> digest = sha256_of_file(file.path);
+    const Result<Digest> digest = digest_of(file.path);
     if (!digest) return digest.error();
     key.files.push_back({std::move(file), *digest});
   }

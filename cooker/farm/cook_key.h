@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ struct JobKey {
 ///
 /// Precondition: job.options is what a command line makes of its options: `costs`, `known_edges`,
 /// `keep_all` and `face_order` have their defaults. Reads every file once. Errors: those of
-/// list_job_files and sha256_of_file.
-Result<JobKey> key_of(const CookJob& job);
+/// list_job_files and `digest_of`, by which files are digested.
+using DigestOf = std::function<Result<Digest>(const std::filesystem::path& file)>;
+Result<JobKey> key_of(const CookJob& job, const DigestOf& digest_of = sha256_of_file);
 
 /// The text that the key is the digest of, for people who look for the difference of two keys.
 [[nodiscard]] std::string key_text(const CookJob& job, const std::vector<KeyedFile>& files);

@@ -33,6 +33,26 @@ std::optional<Journal::Entry> entry_of(const Json& line) {
   return Journal::Entry{*key, *output, bytes->get<std::uint64_t>()};
 }
 
+// The five numbers of a state, in the order of its members.
+Json to_json(const FileState& state) {
+  Json numbers = Json::array();
+  for (const std::uint64_t number : state.numbers) numbers.push_back(number);
+  return numbers;
+}
+
+std::optional<FileState> state_in(const Json& line) {
+  const Json* const numbers = line.find("state");
+  FileState state;
+  if (numbers == nullptr || !numbers->is_array() || numbers->size() != state.numbers.size())
+    return std::nullopt;
+  std::size_t i = 0;
+  for (const Json& number : *numbers) {
+    if (!number.is_number_unsigned()) return std::nullopt;
+    state.numbers[i++] = number.get<std::uint64_t>();
+  }
+  return state;
+}
+
 }  // namespace
 
 Result<Journal> Journal::open(const fs::path& path) {
@@ -60,6 +80,7 @@ Journal::Journal(Journal&& other) noexcept
     : path_(std::move(other.path_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       entries_(std::move(other.entries_)),
+      files_(std::move(other.files_)),
       mutex_(std::move(other.mutex_)) {}
 
 Journal::~Journal() {
@@ -72,6 +93,9 @@ void Journal::read(std::string_view text) {
     const ParsedJson line = parse_json(text.substr(0, end));
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
     if (const auto entry = entry_of(line.value)) entries_[text_at(line.value, "output")] = *entry;
+    const std::optional<FileState> state = state_in(line.value);
+    const std::optional<Digest> digest = cooker::digest_of(text_at(line.value, "sha256"));
+    if (state && digest) files_[text_at(line.value, "file")] = {*state, *digest};
   }
 }
 
@@ -81,12 +105,34 @@ std::optional<Journal::Entry> Journal::entry(const std::string& name) const {
   return found == entries_.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::optional<Journal::Entry> Journal::find(const fs::path& output, const Digest& key) const {
+Result<Digest> Journal::digest_of(const fs::path& file, bool* is_remembered) {
+  const std::string name = percent_encoded(file.string());
+  const std::optional<FileState> before = state_of(file);
+  if (before) {
+    const std::lock_guard lock(*mutex_);
+    const auto known = files_.find(name);
+    if (known != files_.end() && known->second.state == *before) {
+      if (is_remembered != nullptr) *is_remembered = true;
+      return known->second.digest;
+    }
+  }
+  const bool is_settled = before && before->is_settled(now_nanoseconds());
+  const Result<Digest> digest = sha256_of_file(file);
+  if (!digest || !is_settled || state_of(file) != before) return digest;
+  const Json line = {{"file", name}, {"state", to_json(*before)}, {"sha256", hex_of(*digest)}};
+  const std::lock_guard lock(*mutex_);
+  if (Status status = add_line(line.dump()); !status) return status.error();
+  files_[name] = {*before, *digest};
+  return digest;
+}
+
+std::optional<Journal::Entry> Journal::find(const fs::path& output, const Digest& key,
+                                            bool may_remember) {
   const std::optional<Entry> known = entry(percent_encoded(output.string()));
   if (!known || known->key != key) return std::nullopt;
   std::error_code error;
   if (fs::file_size(output, error) != known->bytes || error) return std::nullopt;
-  const Result<Digest> digest = sha256_of_file(output);
+  const Result<Digest> digest = may_remember ? digest_of(output) : sha256_of_file(output);
   if (!digest || *digest != known->output) return std::nullopt;
   return known;
 }
@@ -97,10 +143,16 @@ Status Journal::add(const fs::path& output, const Entry& entry) {
                      {"key", hex_of(entry.key)},
                      {"sha256", hex_of(entry.output)},
                      {"bytes", entry.bytes}};
-  const std::string text = line.dump() + "\n";
   const std::lock_guard lock(*mutex_);
-  if (!write_all(descriptor_, std::as_bytes(std::span(text)))) return write_failure(path_, "write");
+  if (Status status = add_line(line.dump()); !status) return status;
   entries_[name] = entry;
+  return {};
+}
+
+// Precondition: the caller has the lock.
+Status Journal::add_line(const std::string& line) {
+  const std::string text = line + "\n";
+  if (!write_all(descriptor_, std::as_bytes(std::span(text)))) return write_failure(path_, "write");
   return {};
 }
 

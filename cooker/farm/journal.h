@@ -14,12 +14,14 @@
 
 #include <boxtree/error.h>
 
+#include "cooker/farm/file_state.h"
 #include "cooker/farm/sha256.h"
 
 namespace boxtree::cooker {
 
 /// A file of JSON lines, one added whenever an output is complete: {"output", "key", "sha256",
-/// "bytes"}. Of several lines of an output the last one counts. A line that is cut short or damaged
+/// "bytes"}, and one whenever a file was digested: {"file", "state", "sha256"}. Of several lines of
+/// an output or a file the last one counts. A line that is cut short or damaged
 /// counts as none, so that its job is cooked again: a journal can only cost time. One process at a
 /// time has it: a lock of the file (flock) says so. Safe for several threads.
 class Journal {
@@ -40,10 +42,15 @@ class Journal {
   Journal& operator=(const Journal&) = delete;
   ~Journal();
 
+  /// The digest of a file, read only if it is not that of an earlier call, of this run or another:
+  /// see FileState. Then sets `is_remembered`. Errors: those of sha256_of_file; kWriteFailed.
+  [[nodiscard]] Result<Digest> digest_of(const std::filesystem::path& file,
+                                         bool* is_remembered = nullptr);
+
   /// Whether `output` was finished with this key and is there with the bytes that were written
-  /// then: reads and digests it. What was finished, or nothing.
-  [[nodiscard]] std::optional<Entry> find(const std::filesystem::path& output,
-                                          const Digest& key) const;
+  /// then, by digest_of if `may_remember`, else by reading it. What was finished, or nothing.
+  [[nodiscard]] std::optional<Entry> find(const std::filesystem::path& output, const Digest& key,
+                                          bool may_remember = false);
 
   /// Adds a line. Error: kWriteFailed.
   Status add(const std::filesystem::path& output, const Entry& entry);
@@ -51,13 +58,20 @@ class Journal {
  private:
   Journal(std::filesystem::path path, int descriptor)
       : path_(std::move(path)), descriptor_(descriptor) {}
+  struct KnownFile {
+    FileState state;
+    Digest digest;
+  };
+
   void read(std::string_view text);
+  Status add_line(const std::string& line);
   [[nodiscard]] std::optional<Entry> entry(const std::string& name) const;
 
   std::filesystem::path path_;
   int descriptor_;  // -1 after a move
   std::map<std::string, Entry> entries_;
-  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // of the two above
+  std::map<std::string, KnownFile> files_;
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // of the three above
 };
 
 }  // namespace boxtree::cooker

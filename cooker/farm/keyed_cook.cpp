@@ -41,7 +41,7 @@ class KeyedCook {
     const std::vector<fs::path> read = paths_of(key_);
     if (Status status = check_job(job_, read); !status) return status.error();
     if (stores_.journal != nullptr) {
-      if (const auto there = stores_.journal->find(job_.output, key_.key)) {
+      if (const auto there = stores_.journal->find(job_.output, key_.key, stores_.trusts_states)) {
         KeyedOutcome outcome;
         outcome.how = KeyedOutcome::How::kThere;
         outcome.bytes = there->bytes;
@@ -127,12 +127,15 @@ class KeyedCook {
     const Result<Digest> output = sha256_of_file(job_.output);
     if (!output) return output.error();
     if (*output == hit.output) return cooked;
-    return Error{Errc::kInternal,
-                 fmt::format("{}: audit: under the key {} the cache had an output of {} bytes with "
-                             "the SHA-256 {}, a cook makes one of {} bytes with {}, which is there "
-                             "now; either the machine has a fault or the cooker has",
-                             job_.output.string(), hex_of(key_.key), hit.bytes, hex_of(hit.output),
-                             cooked->bytes, hex_of(*output))};
+    cooked->difference =
+        Error{Errc::kInternal,
+              fmt::format("{}: audit: under the key {} the cache had an output of {} bytes with "
+                          "the SHA-256 {}, a cook makes one of {} bytes with {}, which is there "
+                          "now; the cooker has a fault, or the machine, or who wrote "
+                          "into the cache",
+                          job_.output.string(), hex_of(key_.key), hit.bytes, hex_of(hit.output),
+                          cooked->bytes, hex_of(*output))};
+    return cooked;
   }
 
   const CookJob& job_;

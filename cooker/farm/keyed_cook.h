@@ -24,6 +24,8 @@ struct KeyedStores {
   double audit_share = 0;
   /// What to keep with an output, for those who get it from the cache.
   std::function<std::string(const Summary& summary)> report;
+  /// Whether the journal need not read an output again that has not changed since (FileState).
+  bool trusts_states = false;
 };
 
 struct KeyedOutcome {
@@ -36,6 +38,9 @@ struct KeyedOutcome {
   std::uint64_t bytes = 0;         // of the output
   std::string report;              // empty if the output has been there
   std::optional<Summary> summary;  // of what was cooked
+  /// What an audit has found: other bytes in the cache than the cook made, which are now in the
+  /// cache, and the output. The cooker has a fault, or the machine, or who wrote into the cache.
+  std::optional<Error> difference;
 };
 
 /// Whether outputs of a job can be kept under its key: not those of streams, nor those of two
@@ -48,9 +53,7 @@ struct KeyedOutcome {
 /// outputs. Precondition: has_keyed_output(job), and `key` is what key_of(job) has just returned.
 ///
 /// Errors: those of cook_job and Journal::add; kFileUnreadable for files that changed while they
-/// were cooked, which passes. kInternal for an internal error or a fault of the machine: a file
-/// that was read and is not in the key, or an audit that finds other bytes in the cache than the
-/// cook made; these are then in the cache, and the output.
+/// were cooked, which passes. kInternal for a file that was read and is not in the key.
 Result<KeyedOutcome> cook_by_key(const CookJob& job, const JobKey& key, const KeyedStores& stores,
                                  const Progress& progress = {});
 

@@ -82,6 +82,31 @@ same "$(jq -r 'select(.there | not) | .output' out.jsonl | sort | xargs)" "cooke
 sed -i '$d' in/m7.obj
 cook_all
 same_as_single
+# What the journal remembers of files, once they have rested: no file is read again, and each change is seen, also by
+# other bytes of the same size with the time of the old ones.
+sleep 2.1
+cook_all
+same "$(count_of .there)" $jobs
+same "$(grep -c '"file"' jobs.jsonl.done | awk -v n=$((2 * jobs)) '{ print ($1 >= n) }')" 1
+cp jobs.jsonl.done rested.done
+cook_all
+same "$(count_of .there)" $jobs
+cmp jobs.jsonl.done rested.done
+cp -p in/m7.obj kept.obj
+sed -i 's/^v 0 0 .*/v 0 0 0.500000/' in/m7.obj
+same "$(wc -c <in/m7.obj)" "$(wc -c <kept.obj)"
+touch -r kept.obj in/m7.obj
+cp -p cooked/m3.bxt kept.bxt
+printf x | dd of=cooked/m3.bxt bs=1 seek=200 conv=notrunc status=none
+touch -r kept.bxt cooked/m3.bxt
+cook_all
+same "$(jq -r 'select(.there | not) | .output' out.jsonl | sort | xargs)" "cooked/m3.bxt cooked/m7.bxt"
+cp -p kept.obj in/m7.obj
+cook_all
+same_as_single
+cook_all --reread
+same "$(count_of .there)" $jobs
+expect 1 "$boxtree" cook in/m1.obj -o x.bxt --reread
 
 # Killed at any moment and started again, it goes on: no output is missing, wrong or half, and nothing else is left.
 for i in $(seq 1 8); do
@@ -104,10 +129,10 @@ for shards in 2 5; do
   for i in $(seq 0 $((shards - 1))); do
     cook_all --shard "$i/$shards"
     cat out.jsonl >>all.jsonl
-    # By the first digits of the key, as anyone can tell it; python, since they fill 64 bits.
-    jq -r '.key' out.jsonl | python3 -c "
-import sys
-sys.exit(any(int(key[:16], 16) % $shards != $i for key in sys.stdin))"
+    # By the name of the output, as anyone can tell it.
+    jq -r '.output' out.jsonl | python3 -c "
+import hashlib, sys
+sys.exit(any(int(hashlib.sha256(name.strip().encode()).hexdigest()[:16], 16) % $shards != $i for name in sys.stdin))"
     jq -r '"'"$i"' " + .output' out.jsonl >>shards.$shards
   done
   same "$(wc -l <all.jsonl)" $jobs
@@ -122,6 +147,17 @@ for i in 0 1 2 3 4; do
 done | sort >moved
 sort shards.5 | cmp - moved
 mv before.jsonl jobs.jsonl
+# Nothing is read of the jobs of others: inputs that are not there, or hang, are no matter.
+mkfifo in/pipe.obj
+for i in $(seq 1 8); do echo "{\"inputs\":[\"in/pipe.obj\"],\"output\":\"pipe$i.bxt\"}"; done >pipes.jsonl
+head -1 jobs.jsonl >>pipes.jsonl
+ours=$(python3 -c "import hashlib; print(int(hashlib.sha256(b'cooked/m1.bxt').hexdigest()[:16], 16) % 64)")
+others=$(python3 -c "
+import hashlib
+print(sum(int(hashlib.sha256(b'pipe%d.bxt' % i).hexdigest()[:16], 16) % 64 == $ours for i in range(1, 9)))")
+same "$others" 0
+timeout 20 "$boxtree" cook --manifest pipes.jsonl --shard "$ours/64" --json >out
+same "$(jq -r .output out)" cooked/m1.bxt
 
 # One bad mesh fails its own line, a missing one may pass, and the others are cooked.
 rm -rf cooked
@@ -235,9 +271,37 @@ same_as_single
 same_as_single two
 # One journal is one run's at a time.
 (exec 9>>jobs.jsonl.done; flock 9; status=2 cook_all; grep -q 'another process' err)
-# An audit: what the cache has is what a cook makes, or the run says so.
+# An audit: what the cache has is what a cook makes, or the run says so, with a status of its own.
 expect 0 "$boxtree" cook in/m8.obj -o audited.bxt --cache cache --audit 1 --json
 same "$(jq .cached out)" false
+lie() { # KEY FILE: an entry as anyone may make one, of another file
+  python3 - "$@" <<'END'
+import hashlib, json, pathlib, sys
+key, file = sys.argv[1:]
+body = pathlib.Path(file).read_bytes()
+digest = hashlib.sha256(body).hexdigest()
+text = json.dumps({"key": key, "output": digest, "bytes": len(body), "report": "[]"})
+for place, data in (f"cas/{digest[:2]}/{digest}", body), \
+                   (f"ac/{key[:2]}/{key}", f"boxtree cache 1 {hashlib.sha256(text.encode()).hexdigest()}\n{text}".encode()):
+    path = pathlib.Path("cache", place)
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes(data)
+END
+}
+key=$("$boxtree" key in/m8.obj | cut -f1)
+lie "$key" single/m9.bxt
+rm audited.bxt
+expect 7 "$boxtree" cook in/m8.obj -o audited.bxt --cache cache --audit 1
+grep -q '^boxtree: difference: audited.bxt: audit: under the key' err
+cmp audited.bxt single/m8.bxt
+lie "$key" single/m9.bxt
+sed 's|in/m1.obj|in/absent.obj|' jobs.jsonl >audit.jsonl # says first what no later run finds
+expect 7 "$boxtree" cook --manifest audit.jsonl --cache cache --audit 1 --json --journal audit.done
+same "$(jq -c 'select(.error) | [.output, .error.status, .error.may_pass]' out | sort | xargs)" \
+  '[cooked/m1.bxt,2,true] [cooked/m8.bxt,7,false]'
+grep -q '^boxtree: difference: audit.jsonl:8: cooked/m8.bxt: audit: ' err
+cmp cooked/m8.bxt single/m8.bxt
+expect 0 "$boxtree" cook in/m8.obj -o audited.bxt --cache cache --audit 1
 # A size: it is kept to.
 cook_all --cache small --cache-size 20K --journal small.done
 rm -rf cooked small small.done

@@ -129,8 +129,8 @@ no_proxy='*' python3 lie.py "$url" "$key" lie.bxt
 expect 0 "$boxtree" cook one/in/m1.obj -o lied.bxt --cache "$url" --json
 same "$(jq .cached out)" true
 cmp lied.bxt lie.bxt
-expect 4 "$boxtree" cook one/in/m1.obj -o audited.bxt --cache "$url" --audit 1
-says 'audit: under the key' err
+expect 7 "$boxtree" cook one/in/m1.obj -o audited.bxt --cache "$url" --audit 1
+says '^boxtree: difference: audited.bxt: audit: under the key' err
 cmp audited.bxt one/cooked/m1.bxt
 expect 0 "$boxtree" cook one/in/m1.obj -o audited.bxt --cache "$url" --audit 1 --json
 same "$(jq .cached out)" false

@@ -2,10 +2,12 @@
 // A journal can cost time and never a wrong output: each way in which it, or an output, is damaged.
 #include "cooker/farm/journal.h"
 
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/require.h"
@@ -90,7 +92,7 @@ TEST(Journal, AnyChangedByteIsNoWrongOutput) {
     std::string damaged = text;
     damaged[i] = static_cast<char>(damaged[i] ^ 1);
     folder.write("j", damaged);
-    const Journal journal = require(Journal::open(path));
+    Journal journal = require(Journal::open(path));
     const auto found = journal.find(output, kKey);
     if (found) {
       EXPECT_EQ(found->output, sha256_of("bytes")) << i;
@@ -131,6 +133,92 @@ TEST(Journal, LinesOfSeveralThreadsAreWhole) {
   const std::string text = test::read_text(path);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), kThreads * kLines + 1);
   EXPECT_TRUE(require(Journal::open(path)).find(output, kKey));
+}
+
+// A line with the state that a file has now and the digest of other bytes, which digest_of gives if
+// it reads nothing.
+void remember(const fs::path& journal, const fs::path& file, const FileState& state) {
+  const auto& n = state.numbers;
+  std::ofstream(journal, std::ios::app)
+      << fmt::format(R"({{"file":"{}","state":[{},{},{},{},{}],"sha256":"{}"}})", file.string(),
+                     n[0], n[1], n[2], n[3], n[4], hex_of(sha256_of("remembered")))
+      << '\n';
+}
+
+TEST(Journal, RemembersDigestsOfFilesWhoseStateIsTheSame) {
+  const test::TempFolder folder;
+  const fs::path path = folder.path() / "j", file = folder.write("f", "bytes");
+  const FileState state = *state_of(file);
+  remember(path, file, state);
+  bool is_remembered = false;
+  EXPECT_EQ(require(require(Journal::open(path)).digest_of(file, &is_remembered)),
+            sha256_of("remembered"));
+  EXPECT_TRUE(is_remembered);
+  // Outputs, too, where that is wanted.
+  const Journal::Entry entry{kKey, sha256_of("remembered"), 5};
+  Journal journal = require(Journal::open(path));
+  ASSERT_TRUE(journal.add(file, entry));
+  EXPECT_TRUE(journal.find(file, kKey, true));
+  EXPECT_FALSE(journal.find(file, kKey));
+}
+
+TEST(Journal, AnyOtherStateIsReadAnew) {
+  const test::TempFolder folder;
+  const fs::path file = folder.write("f", "bytes");
+  for (std::size_t i = 0; i < 5; ++i) {
+    const fs::path path = folder.path() / (std::to_string(i) + ".done");
+    FileState state = *state_of(file);
+    ++state.numbers[i];
+    remember(path, file, state);
+    bool is_remembered = false;
+    EXPECT_EQ(require(require(Journal::open(path)).digest_of(file, &is_remembered)),
+              sha256_of("bytes"));
+    EXPECT_FALSE(is_remembered);
+  }
+  const fs::path path = folder.path() / "j";
+  remember(path, file, *state_of(file));
+  Journal journal = require(Journal::open(path));
+  EXPECT_EQ(require(journal.digest_of(file)), sha256_of("remembered"));
+  const auto time = fs::last_write_time(file);
+  folder.write("f", "bytez");  // as long, with the time of before
+  fs::last_write_time(file, time);
+  EXPECT_EQ(require(journal.digest_of(file)), sha256_of("bytez"));
+  fs::remove(file);
+  EXPECT_EQ(journal.digest_of(file).code(), Errc::kFileNotFound);
+}
+
+// Another change within the step of the file system's times would not show.
+TEST(Journal, WhatHasJustChangedIsNotRemembered) {
+  const test::TempFolder folder;
+  const fs::path path = folder.path() / "j", file = folder.write("f", "bytes");
+  Journal journal = require(Journal::open(path));
+  EXPECT_EQ(require(journal.digest_of(file)), sha256_of("bytes"));
+  EXPECT_EQ(test::read_text(path), "");
+}
+
+TEST(Journal, StatesThatAreNoneAreNotRemembered) {
+  const test::TempFolder folder;
+  const fs::path path = folder.path() / "j", file = folder.write("f", "bytes");
+  const std::string digest = hex_of(sha256_of("remembered"));
+  for (const char* state : {"[]", "[1,2,3,4]", "[1,2,3,4,5,6]", "[\"1\",2,3,4,5]", "[1.5,2,3,4,5]",
+                            "{}", "[null,null,null,null,null]", "7"}) {
+    folder.write("j", fmt::format(R"({{"file":"{}","state":{},"sha256":"{}"}})"
+                                  "\n",
+                                  file.string(), state, digest));
+    EXPECT_EQ(require(require(Journal::open(path)).digest_of(file)), sha256_of("bytes")) << state;
+  }
+}
+
+TEST(FileState, ChangesOfTheLastTwoSecondsAreNotSettled) {
+  constexpr std::int64_t kNow = 1'700'000'000'000'000'000, kSecond = 1'000'000'000;
+  const auto state = [](std::int64_t modified, std::int64_t changed) {
+    return FileState{
+        {1, 2, 3, static_cast<std::uint64_t>(modified), static_cast<std::uint64_t>(changed)}};
+  };
+  EXPECT_TRUE(state(kNow - 3 * kSecond, kNow - 3 * kSecond).is_settled(kNow));
+  EXPECT_FALSE(state(kNow - 2 * kSecond, kNow - 3 * kSecond).is_settled(kNow));
+  EXPECT_FALSE(state(kNow - 3 * kSecond, kNow - kSecond).is_settled(kNow));
+  EXPECT_FALSE(state(kNow + 3 * kSecond, kNow - 3 * kSecond).is_settled(kNow));  // clocks differ
 }
 
 }  // namespace
