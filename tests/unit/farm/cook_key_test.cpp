@@ -106,9 +106,10 @@ const std::vector<Variation>& variations() {
 // manifest changes with them. tests/cli/farm_test.sh compares their bytes.
 const std::vector<std::string>& options_of_runs() {
   static const std::vector<std::string> kAll = {
-      "--output",     "--format",     "--manifest", "--shard",      "--memory", "--journal",
-      "--fail-fast",  "--keep-going", "--cache",    "--cache-size", "--audit",  "--why",
-      "--candidates", "--jobs",       "--json",     "--quiet",      "--help",   "--help-all"};
+      "--output",     "--format",    "--manifest",   "--shard",      "--memory",
+      "--journal",    "--fail-fast", "--keep-going", "--reread",     "--cache",
+      "--cache-size", "--audit",     "--why",        "--candidates", "--jobs",
+      "--json",       "--quiet",     "--help",       "--help-all"};
   return kAll;
 }
 
