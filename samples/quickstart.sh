@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# From a fresh Debian 12 to answered queries: installs what is missing, builds (two to four minutes on two
+# From a fresh Debian 12 to answered queries: installs what is missing, builds (three to six minutes on two
 # cores), cooks real meshes from Debian's own packages, queries them, and writes a report page.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -12,22 +12,22 @@ install_missing $BUILD_PACKAGES $SAMPLE_PACKAGES
 say() { printf '\n== %s\n' "$*"; }
 
 say "build in build/quickstart"
-# One set of instructions suffices for what runs here alone; eight sources at a time take half as long.
+# One set of instructions suffices for what runs here alone; eight sources of the runtime at a time take half as long.
 sets=sse4
 if grep -qsw avx2 /proc/cpuinfo; then sets=avx2; fi
 cmake -S . -B build/quickstart -G Ninja -DCMAKE_BUILD_TYPE=Release -DBOXTREE_BUILD_TESTS=OFF \
   -DBOXTREE_INSTRUCTION_SETS=$sets -DCMAKE_UNITY_BUILD=ON >/dev/null
-# Ninja counts in one line of a terminal; elsewhere every fifth step is a line. (mawk would keep them until it has 4 KB.)
-every_fifth() {
+# Ninja counts in one line of a terminal; elsewhere every tenth step is a line. (mawk would keep them until it has 4 KB.)
+every_tenth() {
   local line step=0
   while IFS= read -r line; do
-    if [[ $line != \[* ]] || ((step++ % 5 == 0)); then printf '%s\n' "$line"; fi
+    if [[ $line != \[* ]] || ((step++ % 10 == 0)); then printf '%s\n' "$line"; fi
   done
 }
 if [ -t 1 ]; then
   NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart boxtree_cli
 else
-  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart boxtree_cli | every_fifth
+  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart boxtree_cli | every_tenth
 fi
 boxtree=build/quickstart/boxtree
 out=build/quickstart/cooked

@@ -133,7 +133,7 @@ Status emit_members(const std::vector<PackMember>& members, const OpenInput& ope
 }
 
 // A row of the section table.
-struct Section {
+struct PackSection {
   SectionKind kind;
   std::uint64_t size;
   std::uint64_t checksum;
@@ -146,9 +146,9 @@ Status write_sections(AtomicFile& file, const Index& index, std::uint64_t member
   const Bytes names = std::as_bytes(std::span(index.names));
   const Bytes rows = std::as_bytes(std::span(index.rows));
   const std::array sections{
-      Section{SectionKind::kNames, names.size(), checksum(names)},
-      Section{SectionKind::kPack, rows.size(), checksum(rows)},
-      Section{SectionKind::kMembers, index.members_bytes, members_checksum},
+      PackSection{SectionKind::kNames, names.size(), checksum(names)},
+      PackSection{SectionKind::kPack, rows.size(), checksum(rows)},
+      PackSection{SectionKind::kMembers, index.members_bytes, members_checksum},
   };
   std::uint64_t end = table_end(sections.size());
   std::array<SectionEntry, sections.size()> entries;
