@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/import/file_error.h"
 #include "cooker/proof/pack_proof.h"
 #include "cooker/text/utf8.h"
 #include "format/pack.h"
@@ -73,20 +74,18 @@ Result<std::vector<PackMember>> list_members(const fs::path& path, PackNames nam
                                              const OpenInput& open) {
   const Result<File> file = open(path);
   if (!file) return file.error();
-  const auto named = [&](const Error& error) {
-    return Error{error.code, path.string() + ": " + error.detail};
-  };
-  if (Status status = verify_checksums(*file); !status) return named(status.error());
+  if (Status status = verify_checksums(*file); !status) return in_file(path, status.error());
   if (Status status = check_padding(file->bytes(), OpenFile::of(*file).container()); !status) {
-    return named(status.error());
+    return in_file(path, status.error());
   }
   if (file->is_pack()) {
     Result<std::vector<PackMember>> members = members_of_pack(path, *file, names);
-    if (!members) return named(members.error());
+    if (!members) return in_file(path, members.error());
     return members;
   }
   if (file->tree_count() == 0) {
-    return named({Errc::kSectionMissing, "expected a file with trees, found one without any"});
+    return in_file(path,
+                   {Errc::kSectionMissing, "expected a file with trees, found one without any"});
   }
   PackMember member{path, 0, file->bytes().size(), {}, {}};
   if (names == PackNames::kPath) {

@@ -49,8 +49,7 @@ bxt_status visit_in_box(const Handle* subject, const bxt_vec3* min, const bxt_ve
   });
 }
 
-// Calls overlap_all(begin, shapes, results, visitor, limits...), the batch of a tree or of a scene,
-// with shapes some at a time.
+// Calls overlap_all(tree or scene, shapes, results, visitor, limits...) with shapes some at a time.
 template <class Handle, class ShapeAt, class OverlapAll>
 bxt_status visit_batch(const Handle* subject, std::size_t count, const ShapeAt& shape_at,
                        bxt_batch_face_visitor visitor, void* context, const bxt_limits* limits,

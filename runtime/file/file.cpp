@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The file as applications see it.
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -57,19 +58,19 @@ std::string_view File::tree_name(std::uint32_t index) const noexcept {
 }
 
 Result<std::uint32_t> File::find_tree(std::string_view name) const {
-  std::uint32_t i = 0;
+  std::uint32_t i = 0, end = tree_count();
   if (is_pack()) {
-    // The first that is not before the name. Bytes are unsigned in char_traits<char>, too.
+    // The first that is not before the name, and no other. Bytes are unsigned in char_traits<char>,
+    // too.
     for (std::uint32_t count = tree_count(); count > 0;) {
       const std::uint32_t half = count / 2;
       const bool is_before = tree_name(i + half) < name;
       if (is_before) i += half + 1;
       count = is_before ? count - half - 1 : half;
     }
-    if (i < tree_count() && tree_name(i) == name) return i;
-    i = tree_count();
+    end = std::min(end, i + 1);
   }
-  for (; i < tree_count(); ++i) {
+  for (; i < end; ++i) {
     if (tree_name(i) == name) return i;
   }
   return Error{Errc::kTreeIndex, "no tree is named \"" + std::string(name) + "\""};

@@ -186,15 +186,16 @@ VisitResult visit_sphere(const Scene& queried, const Sphere& sphere, SceneFaceVi
   return query_scene(scene, shape, visitor, layers, limits);
 }
 
-// Calls `visit(shape, visitor)` for each of a batch.
+// Calls `visit(shape, visitor)` for each of a batch, one after the other.
 template <class Shape, class VisitShape>
 Status visit_each(std::span<const Shape> shapes, std::span<VisitResult> results,
                   SceneBatchFaceVisitor visitor, const VisitShape& visit) {
   std::size_t number = 0;
   const auto faces = [&](const SceneFace& face) { return visitor(number, face); };
   return answer_each(shapes, results, [&](const Shape& shape) {
-    number = static_cast<std::size_t>(&shape - shapes.data());
-    return visit(shape, faces);
+    const VisitResult end = visit(shape, faces);
+    ++number;
+    return end;
   });
 }
 

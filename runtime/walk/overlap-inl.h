@@ -25,6 +25,18 @@ struct Classification {
   std::uint32_t inside;
 };
 
+/// Classifies eight boxes or triangles, part by part: part_of(part).
+template <class Filter, class PartOf>
+HWY_INLINE Classification classify_parts(const Filter& filter, const PartOf& part_of) {
+  Classification all{0, 0};
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const Classification classification = filter.classify(part_of(part));
+    all.touched |= classification.touched << (part * kLanes);
+    all.inside |= classification.inside << (part * kLanes);
+  }
+  return all;
+}
+
 /// Classifies triangles by their bounds and corners; `inside`: they provably touch the shape. Uses
 /// shape.classify(const VectorBox&) and shape.contained(const VectorPoint&), whose bits are set
 /// only for points that provably lie in the shape.
@@ -62,19 +74,17 @@ class OverlapLeaves {
     }
     std::uint32_t reported = kNoFaceId;  // halves of a quad are adjacent
     for (std::size_t group = 0; group < leaf_.groups(); ++group) {
-      std::uint32_t touched = 0, certain = 0;
-      for (std::size_t part = 0; part < kParts; ++part) {
-        const Classification classification = filter_.classify(leaf_.triangles(group, part));
-        touched |= classification.touched << (part * kLanes);
-        certain |= classification.inside << (part * kLanes);
-      }
-      const bool go_on = for_each_bit(touched & leaf_.lanes(group), [&](std::uint32_t i) {
-        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
-        if (leaf_.face(lane) == reported) return true;
-        if (((certain >> i) & 1u) == 0 && !touches(lane)) return walk_.error == Errc::kOk;
-        reported = leaf_.face(lane);
-        return walk_.report(reported);
-      });
+      const Classification classification =
+          classify_parts(filter_, [&](std::size_t part) { return leaf_.triangles(group, part); });
+      const bool go_on =
+          for_each_bit(classification.touched & leaf_.lanes(group), [&](std::uint32_t i) {
+            const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
+            if (leaf_.face(lane) == reported) return true;
+            if (((classification.inside >> i) & 1u) == 0 && !touches(lane))
+              return walk_.error == Errc::kOk;
+            reported = leaf_.face(lane);
+            return walk_.report(reported);
+          });
       if (!go_on) return false;
     }
     return true;
@@ -161,12 +171,8 @@ class OverlapWalk {
                                      ChildBoxes& children) const {
     const std::uint32_t all = (1u << links.child_count) - 1;
     if (inside) return {all, all};
-    Classification classification{0, 0};
-    for (std::size_t part = 0; part < kParts; ++part) {
-      const Classification of_part = filter_.classify(decode(node, box, part, children));
-      classification.touched |= of_part.touched << (part * kLanes);
-      classification.inside |= of_part.inside << (part * kLanes);
-    }
+    Classification classification = classify_parts(
+        filter_, [&](std::size_t part) { return decode(node, box, part, children); });
     classification.touched &= all;
     return classification;
   }

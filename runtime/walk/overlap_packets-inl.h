@@ -103,9 +103,7 @@ class ShapePacket {
     });
   }
 
-  [[nodiscard]] HWY_INLINE Classification classify(std::uint32_t s, const VectorBox& box) const {
-    return shapes_[s]->filter.classify(box);
-  }
+  [[nodiscard]] const Filter& filter(std::uint32_t s) const { return shapes_[s]->filter; }
 
   /// Reports faces `first` to first + count - 1, without reading them, to each of `shapes`.
   HWY_NOINLINE void report(ShapeSet shapes, std::uint32_t first, std::uint32_t count) {
@@ -129,19 +127,16 @@ class ShapePacket {
       for (std::size_t part = 0; part < kParts; ++part)
         triangles[part] = leaf_.triangles(group, part);
       for_each_bit(shapes & going_, [&](std::uint32_t s) {
-        std::uint32_t touched = 0, certain = 0;
-        for (std::size_t part = 0; part < kParts; ++part) {
-          const Classification classification = shapes_[s]->filter.classify(triangles[part]);
-          touched |= classification.touched << (part * kLanes);
-          certain |= classification.inside << (part * kLanes);
-        }
-        static_cast<void>(for_each_bit(touched & leaf_.lanes(group), [&](std::uint32_t i) {
-          const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
-          if (leaf_.face(lane) == reported[s]) return true;
-          if (((certain >> i) & 1u) == 0 && !touches(s, lane)) return is_going(s);
-          reported[s] = leaf_.face(lane);
-          return report(s, reported[s]);
-        }));
+        const Classification classification =
+            classify_parts(shapes_[s]->filter, [&](std::size_t part) { return triangles[part]; });
+        static_cast<void>(
+            for_each_bit(classification.touched & leaf_.lanes(group), [&](std::uint32_t i) {
+              const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
+              if (leaf_.face(lane) == reported[s]) return true;
+              if (((classification.inside >> i) & 1u) == 0 && !touches(s, lane)) return is_going(s);
+              reported[s] = leaf_.face(lane);
+              return report(s, reported[s]);
+            }));
         return true;
       });
     }
@@ -294,12 +289,8 @@ class ShapePacketWalk {
       boxes[part] = decode(node, box, part, children.boxes);
     std::uint32_t passing = inside != 0 ? all : 0;
     for_each_bit(tested, [&](std::uint32_t s) {
-      Classification classification{0, 0};
-      for (std::size_t part = 0; part < kParts; ++part) {
-        const Classification of_part = packet_.classify(s, boxes[part]);
-        classification.touched |= of_part.touched << (part * kLanes);
-        classification.inside |= of_part.inside << (part * kLanes);
-      }
+      Classification classification =
+          classify_parts(packet_.filter(s), [&](std::size_t part) { return boxes[part]; });
       classification.touched &= all;
       passing |= classification.touched;
       for_each_bit(classification.touched, [&](std::uint32_t i) {
