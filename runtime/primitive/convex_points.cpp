@@ -90,7 +90,7 @@ bool holds_origin(const Differences& d, const DifferencePoint& apex, double erro
 }
 
 CoreDistance touching_at(const Eigen::Vector3d& point) noexcept {
-  return {0, 0, 0, 0, point, Eigen::Vector3d::Zero()};
+  return {0, 0, 0, point, Eigen::Vector3d::Zero(), 0, Eigen::Vector3d::Zero()};
 }
 
 // By a triangle of the hull's points that is about as close as any: exchanges its points for others
@@ -99,12 +99,12 @@ CoreDistance distance_of_triangle(const SupportSearch& search, Corners hull) noe
   const Corners& corner = search.corner;
   TriangleDistance found = triangle_distance({hull}, {corner});
   const double error = 64 * kRoundoffF64 * search.largest;
-  double lower = found.lower;
+  Separation apart;
   for (int step = 0; step < kMostDirections; ++step) {
     const Eigen::Vector3d between = found.second - found.first;
-    lower = separation_near(found.first, found.second, search.point, corner, search.largest,
+    apart = separation_near(found.first, found.second, search.point, corner, search.largest,
                             found.upper - error);
-    if (lower >= found.upper - error) break;
+    if (apart.lower >= found.upper - error) break;
     const Eigen::Vector3d& other = search.point[farthest_point(search.point, between)];
     TriangleDistance best = found;
     Corners best_hull = hull;
@@ -117,8 +117,8 @@ CoreDistance distance_of_triangle(const SupportSearch& search, Corners hull) noe
       best_hull = exchanged;
     }
     if (!(best.upper < found.upper)) {
-      lower = std::max(lower, separation_on_features(between, edges_of(hull), edges_of(corner),
-                                                     search.point, corner, search.largest));
+      separate_on_features(between, edges_of(hull), edges_of(corner), search.point, corner,
+                           search.largest, apart);
       break;
     }
     found = best;
@@ -127,10 +127,10 @@ CoreDistance distance_of_triangle(const SupportSearch& search, Corners hull) noe
   CoreDistance out;
   out.between = found.second - found.first;
   out.core = found.first;
-  out.lower = lower;
+  out.lower = out.along = apart.lower;
   out.upper = found.upper;
   out.length = std::sqrt(squared_length(out.between));
-  out.along = search.separation(out.between);
+  out.apart = apart.direction;
   return out;
 }
 
@@ -219,7 +219,7 @@ CoreDistance hull_distance(std::span<const Eigen::Vector3d> points,
         core += weight[static_cast<Eigen::Index>(i)] * points[difference[i].point];
       }
       // closest_point.cpp: off by a few u of the largest coordinate.
-      return {along, length + 32 * kRoundoffF64 * size, along, length, core, way};
+      return {along, length + 32 * kRoundoffF64 * size, length, core, way, along, way};
     }
   }
   return distance_of_triangle(search, search.points_of(difference));

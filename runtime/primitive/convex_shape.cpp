@@ -85,6 +85,7 @@ CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noex
     found.lower = std::max(0.0, found.length - error);
     found.upper = found.length + error;
     found.along = separation_along(found.between, core, corner, max_abs);
+    found.apart = found.between;
     return found;
   }
   const Eigen::Vector3d arm = shape.half[0] * shape.axis[0];
@@ -95,8 +96,8 @@ CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noex
   found.core = distance.first;
   found.between = distance.second - distance.first;
   found.length = std::sqrt(squared_length(found.between));
-  found.along =
-      separation_along(found.between, std::array<Eigen::Vector3d, 2>{-arm, arm}, corner, max_abs);
+  found.along = distance.lower;
+  found.apart = distance.apart;
   return found;
 }
 

@@ -87,10 +87,11 @@ struct Projection {
 struct CoreDistance {
   double lower;             // of the distance
   double upper;             // likewise
-  double along;             // of the gap along `between`, or 0
   double length;            // of `between`
   Eigen::Vector3d core;     // its closest point
   Eigen::Vector3d between;  // from there to the closest point of the triangle
+  double along;             // of the gap along `apart`, or 0
+  Eigen::Vector3d apart;    // the best direction to see them apart, of any length
 };
 
 /// Points of the core of a sphere or capsule and of a triangle that are closest to each other, to

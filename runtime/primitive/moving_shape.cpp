@@ -186,9 +186,9 @@ std::optional<double> first_touch_by_distance(const MovingShape& moving, const T
     // Nothing comes nearer by more than it moves.
     double advance = (at.lower - reach) / longest_length(moving.direction);
     if (at.along > reach) {
-      const double speed = speed_along(at.between, moving.direction);
+      const double speed = speed_along(at.apart, moving.direction);
       if (!(speed > 0)) return std::nullopt;  // it moves away from the gap
-      advance = std::max(advance, (at.along - reach) * at.length / speed);
+      advance = std::max(advance, (at.along - reach) * std::sqrt(squared_length(at.apart)) / speed);
     } else if (const Line line = other_line(moving, corner, at.between); line.shows_gap()) {
       if (!(line.fastest() > 0)) return std::nullopt;
       advance = std::max(advance, line.gap / line.fastest());

@@ -78,18 +78,30 @@ template <std::size_t N>
   }
 }
 
-/// The best bound of separation_along for directions near `direction` that are orthogonal to a
-/// face, to an edge, or to an edge of each set (see edges_of). They are computed from the edges,
-/// which are more accurate than vectors from an inner point to a corner; needles need this.
-template <class FirstEdges, class SecondEdges, class First, class Second>
-[[nodiscard]] double separation_on_features(const Eigen::Vector3d& direction,
-                                            const FirstEdges& first_edges,
-                                            const SecondEdges& second_edges, const First& first,
-                                            const Second& second, double max_abs) noexcept {
+/// A lower bound of a distance, and the direction whose gap it is, of any length.
+struct Separation {
+  template <class First, class Second>
+  void consider(const Eigen::Vector3d& other, const First& first, const Second& second,
+                double max_abs) noexcept {
+    const double gap = separation_along(other, first, second, max_abs);
+    if (!(gap > lower)) return;
+    lower = gap;
+    direction = other;
+  }
+
   double lower = 0;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+};
+
+/// Makes the best of directions near `direction` that are orthogonal to a face, to an edge, or to
+/// an edge of each set (see edges_of). They are computed from the edges, which are more accurate
+/// than vectors from an inner point to a corner; needles need this.
+template <class FirstEdges, class SecondEdges, class First, class Second>
+void separate_on_features(const Eigen::Vector3d& direction, const FirstEdges& first_edges,
+                          const SecondEdges& second_edges, const First& first, const Second& second,
+                          double max_abs, Separation& best) noexcept {
   const auto consider = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    lower =
-        std::max(lower, separation_along(orthogonal_to(direction, a, b), first, second, max_abs));
+    best.consider(orthogonal_to(direction, a, b), first, second, max_abs);
   };
   const auto consider_one = [&](const auto& edges) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -102,7 +114,6 @@ template <class FirstEdges, class SecondEdges, class First, class Second>
   for (const Eigen::Vector3d& a : first_edges) {
     for (const Eigen::Vector3d& b : second_edges) consider(a, b);
   }
-  return lower;
 }
 
 /// A lower bound of the distance between the hulls of two sets of points, given a nearly closest
@@ -111,14 +122,16 @@ template <class FirstEdges, class SecondEdges, class First, class Second>
 /// is then made orthogonal to the vector to that corner, and if need be to a second one, and at
 /// last to each edge and face of sets that are triangles. A bound of `enough` is not improved.
 template <class First, class Second>
-[[nodiscard]] double separation_near(const Eigen::Vector3d& on_first,
-                                     const Eigen::Vector3d& on_second, const First& first,
-                                     const Second& second, double max_abs, double enough) noexcept {
+[[nodiscard]] Separation separation_near(const Eigen::Vector3d& on_first,
+                                         const Eigen::Vector3d& on_second, const First& first,
+                                         const Second& second, double max_abs,
+                                         double enough) noexcept {
   const Eigen::Vector3d between = on_second - on_first;
   Eigen::Vector3d direction = between;
-  double lower = separation_along(direction, first, second, max_abs);
+  Separation best;
+  best.consider(direction, first, second, max_abs);
   std::array<Eigen::Vector3d, 2> arms;
-  for (std::size_t n = 0; n < arms.size() && lower < enough; ++n) {
+  for (std::size_t n = 0; n < arms.size() && best.lower < enough; ++n) {
     arms[n].setZero();
     double least = 0;
     const auto consider = [&](const Eigen::Vector3d& arm) {
@@ -134,11 +147,12 @@ template <class First, class Second>
     for (std::size_t i = 0; i <= n; ++i) {
       direction -= (dot(direction, arms[i]) / dot(arms[i], arms[i])) * arms[i];
     }
-    lower = std::max(lower, separation_along(direction, first, second, max_abs));
+    best.consider(direction, first, second, max_abs);
   }
-  if (!(lower < enough)) return lower;
-  return std::max(lower, separation_on_features(between, edges_of(first), edges_of(second), first,
-                                                second, max_abs));
+  if (best.lower < enough) {
+    separate_on_features(between, edges_of(first), edges_of(second), first, second, max_abs, best);
+  }
+  return best;
 }
 
 /// The largest magnitude of any coordinate of these points.

@@ -182,9 +182,11 @@ TriangleDistance distance_found(Search& search) noexcept {
     return separation_near(search.first, search.second, search.p, search.q, search.max_abs,
                            enough());
   };
-  double lower = separation();
-  if (!(lower >= enough()) && search.try_contacts()) lower = std::max(lower, separation());
-  return {lower, search.upper(), search.first, search.second};
+  Separation best = separation();
+  if (!(best.lower >= enough()) && search.try_contacts()) {
+    if (const Separation nearer = separation(); nearer.lower > best.lower) best = nearer;
+  }
+  return {best.lower, search.upper(), search.first, search.second, best.direction};
 }
 
 [[gnu::noinline]] void search_from_segment(Search& search) noexcept {
@@ -215,7 +217,7 @@ TriangleDistance segment_closest_points(const Eigen::Vector3d& from, const Eigen
   const Corners segment{from, to, to};
   Search search(segment, q.corner);
   search_from_segment(search);
-  return {0, search.upper(), search.first, search.second};
+  return {0, search.upper(), search.first, search.second, Eigen::Vector3d::Zero()};
 }
 
 }  // namespace boxtree

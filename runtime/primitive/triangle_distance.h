@@ -12,6 +12,7 @@ struct TriangleDistance {
   double upper;
   Eigen::Vector3d first;   // on the first triangle, up to rounding
   Eigen::Vector3d second;  // on the second one
+  Eigen::Vector3d apart;   // the direction whose gap `lower` is, of any length
 };
 
 /// lower <= distance <= upper always, rounding included: the lower bound is a gap between the two
@@ -27,8 +28,8 @@ struct TriangleDistance {
                                                 const Eigen::Vector3d& to,
                                                 const Triangle& q) noexcept;
 
-/// Likewise, without a bound below: `lower` is 0. If the segment pierces the triangle, the points
-/// need not be close to each other.
+/// Likewise, without a bound below: `lower` is 0, `apart` zero. If the segment pierces the
+/// triangle, the points need not be close to each other.
 [[nodiscard]] TriangleDistance segment_closest_points(const Eigen::Vector3d& from,
                                                       const Eigen::Vector3d& to,
                                                       const Triangle& q) noexcept;

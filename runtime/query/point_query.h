@@ -148,7 +148,8 @@ struct PointQuery {
     const double off = 2 * kRoundoffF64 * max_abs;
     const std::array<Eigen::Vector3d, 1> here{Eigen::Vector3d::Zero()};
     const double lower = separation_near(here[0], Eigen::Vector3d(closest - point), here, corner,
-                                         max_abs, std::sqrt(squared) - 16 * off);
+                                         max_abs, std::sqrt(squared) - 16 * off)
+                             .lower;
     tested_lower = std::min(tested_lower, std::max(0.0, lower - off));
   }
 };

@@ -16,7 +16,7 @@ const std::vector<Family>& all_families() {
 #ifdef BOXTREE_ORACLE_HAS_CGAL
       {"casts", "cast_closest: nothing missed, bounds that hold, within 2^-46", 1, run_casts},
       {"contacts", "collide: nothing missed, within 2^-46, depths that part", 1, run_contacts},
-      {"hulls", "casts and contacts of hulls, likewise; when named", 0, run_hulls},
+      {"hulls", "casts and contacts of hulls, likewise", 1, run_hulls},
 #endif
       {"scenes", "all queries of a scene under updates, against all placed triangles", 2,
        run_scenes},
