@@ -80,9 +80,10 @@ template <std::size_t N>
 
 /// A lower bound of a distance, and the direction whose gap it is, of any length.
 struct Separation {
+  // Not inlined: up to twenty are tried where rounding hides the gap, and few elsewhere.
   template <class First, class Second>
-  void consider(const Eigen::Vector3d& other, const First& first, const Second& second,
-                double max_abs) noexcept {
+  [[gnu::noinline]] void consider(const Eigen::Vector3d& other, const First& first,
+                                  const Second& second, double max_abs) noexcept {
     const double gap = separation_along(other, first, second, max_abs);
     if (!(gap > lower)) return;
     lower = gap;

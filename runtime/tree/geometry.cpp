@@ -64,12 +64,13 @@ void LeafReader::prepare_floats(double max_abs) noexcept {
     }
     floats_.direct_rounding = floats_.rounding;
   }
-  const bool are_readable = has_clusters() ? clusters_.numbers == ClusterNumbers::kF32
-                                           : !mesh_.positions_f64 &&
-                                                 mesh_.position_stride == 3 * sizeof(float) &&
-                                                 is_in_tree_order() && mesh_.vertex_count > 1 &&
-                                                 mesh_.vertex_count <= kMaxVertices32;
-  floats_.is_direct = is_scaled_exactly && are_readable;
+  floats_.is_f64 = has_clusters() ? clusters_.numbers == ClusterNumbers::kF64 : mesh_.positions_f64;
+  if (floats_.is_f64) floats_.direct_rounding = floats_.rounding;
+  const std::size_t number_bytes = floats_.is_f64 ? sizeof(double) : sizeof(float);
+  const bool are_readable =
+      has_clusters() || (mesh_.position_stride == 3 * number_bytes && is_in_tree_order() &&
+                         mesh_.vertex_count > 1 && mesh_.vertex_count <= kMaxVertices32);
+  floats_.is_direct = are_readable && (is_scaled_exactly || floats_.is_f64);
 }
 
 Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {

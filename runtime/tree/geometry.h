@@ -59,6 +59,7 @@ struct FloatLeaves {
   float rounding = 0;         // how far a coordinate is off once rounded to float
   float direct_rounding = 0;  // the same for coordinates that are scaled as they are stored
   bool is_direct = false;     // full leaves are scaled as they are stored
+  bool is_f64 = false;        // they are doubles, placed in tree space and then rounded
 };
 
 /// Reads leaves of one tree. A quad gives the triangles (0,1,2) and (0,2,3) of the same face.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Decodes full leaves with 32-bit numbers from clusters, by vectors of eight lanes that can be
-// permuted: the same numbers as decode_cluster_leaf (format/cluster.cpp), which decodes any leaf,
-// and all of them where vectors are shorter.
+// Decodes full leaves from clusters, by vectors of eight lanes that can be permuted (of four for
+// numbers of 64 bits, vertex by vertex): the same numbers as decode_cluster_leaf
+// (format/cluster.cpp), which decodes any leaf, and all of them where vectors are shorter.
 #if defined(BOXTREE_RUNTIME_WALK_CLUSTER_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_CLUSTER_INL_H
 #undef BOXTREE_RUNTIME_WALK_CLUSTER_INL_H
@@ -12,6 +12,7 @@
 #include <cstddef>
 
 #include "format/cluster_leaf.h"
+#include "runtime/tree/frame.h"
 #include "runtime/walk/cluster_avx512.h"
 #include "runtime/walk/cluster_groups-inl.h"
 #include "runtime/walk/leaf_fields.h"
@@ -24,13 +25,19 @@ namespace boxtree::HWY_NAMESPACE {
 /// Reads leaves of one tree, one at a time.
 class ClusterReader {
  public:
-  explicit ClusterReader(const ClusterView& view)
+  /// `frame`, `doubles`: of numbers of 64 bits, whose positions go there.
+  ClusterReader(const ClusterView& view, const Frame& frame, DoublePositions& doubles)
       : view_(view),
+        frame_(frame),
+        doubles_(doubles),
         leaves_(view),
-        read_by_avx512_(view.bytes.empty() ? nullptr : avx512_leaf_reader()),
+        read_by_avx512_(view.bytes.empty() || view.numbers == ClusterNumbers::kF64
+                            ? nullptr
+                            : avx512_leaf_reader()),
         sixteen_(view) {}
 
-  /// Decodes a leaf of 8 faces; coordinates are multiplied by `scale`. Corners of leaves without
+  /// Decodes a leaf of 8 faces; coordinates are multiplied by `scale`, or those of 64 bits placed
+  /// in tree space and rounded. Corners of leaves without
   /// quads are those of the source but for a turn, which LeafTriangles::read_corners() undoes.
   /// False when its bytes are corrupt, or when decode_cluster_leaf has to read it.
   HWY_INLINE bool read(std::uint32_t leaf, float scale, LeafTriangles& triangles,
@@ -54,9 +61,14 @@ class ClusterReader {
                       hn::Add(ranks(new_aparts), small(new_thirds)), hn::Iota(Words(), kLeafFaces));
     const FloatVector scales = hn::Set(Floats(), scale);
     FloatVector third[3], apart[3];
+    bool are_read = true;
     if (HWY_LIKELY(is_narrow_)) {
       read_vertices<true>(thirds, 0, scales, triangles, third);
       read_vertices<true>(aparts, kLeafFaces, scales, triangles, apart);
+    } else if (view_.numbers == ClusterNumbers::kF64) {
+      are_read =
+          read_double_vertices(thirds, 0xff, 0, triangles, third) &&
+          read_double_vertices(aparts, (1u << 2 * faces.aparts) - 1, kLeafFaces, triangles, apart);
     } else {
       read_wide_vertices(thirds, 0, scales, triangles, third);
       read_wide_vertices(aparts, kLeafFaces, scales, triangles, apart);
@@ -74,7 +86,7 @@ class ClusterReader {
       hn::Store(first.look_up(third[k], apart[k]), Floats(), out[0][k]);
       hn::Store(second.look_up(third[k], apart[k]), Floats(), out[1][k]);
     }
-    return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
+    return are_read && hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
 
   /// The numbers of all corners, [corner][axis][triangle], in the order of the source.
@@ -135,6 +147,11 @@ class ClusterReader {
     set_groups(groups);
     bases_ = cluster.bytes + cluster.bases_at;
     groups_ = cluster.groups;
+    if (view_.numbers == ClusterNumbers::kF64) {
+      set_axes_of_groups(groups);
+      is_narrow_ = false;
+      return true;
+    }
     const ClusterHeaderView header = cluster.header();
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -157,6 +174,34 @@ class ClusterReader {
     constexpr std::uint8_t kMostOfX = 25, kMostOfTwo = kMostBitsRead;
     is_narrow_ = is_zero(hn::Or(above(groups.width[0], kMostOfX),
                                 above(hn::Add(groups.width[0], groups.width[1]), kMostOfTwo)));
+  }
+  // Of numbers of 64 bits.
+  HWY_INLINE void set_axes_of_groups(const GroupLanes& groups) {
+    const GroupBytes bytes;
+    // Bits of a vertex before each axis.
+    const auto z = hn::Add(groups.width[0], groups.width[1]);
+    interleave(hn::Zero(bytes), groups.width[0], z, axes_[0]);
+    interleave(groups.width[0], groups.width[1], groups.width[2], axes_[1]);
+    const auto widest = hn::Max(hn::Max(groups.width[0], groups.width[1]), groups.width[2]);
+    is_one_load_ = is_zero(above(widest, kMostBitsRead));
+    const auto* const bases = reinterpret_cast<const std::uint8_t*>(bases_);
+    interleave(hn::LoadU(bytes, bases), hn::LoadU(bytes, bases + groups_),
+               hn::LoadU(bytes, bases + std::size_t{2} * groups_), axes_[2]);
+  }
+  // x, y and z of each group, and 0.
+  static HWY_INLINE void interleave(GroupByteVector x, GroupByteVector y, GroupByteVector z,
+                                    std::uint8_t (&out)[ClusterHeader::kMostGroups][4]) {
+    const GroupBytes d;
+    const hn::Repartition<std::uint16_t, GroupBytes> pairs;
+    const auto zero = hn::Zero(d);
+    const auto xy_low = hn::BitCast(pairs, hn::InterleaveLower(d, x, y));
+    const auto xy_high = hn::BitCast(pairs, hn::InterleaveUpper(d, x, y));
+    const auto z_low = hn::BitCast(pairs, hn::InterleaveLower(d, z, zero));
+    const auto z_high = hn::BitCast(pairs, hn::InterleaveUpper(d, z, zero));
+    hn::Store(hn::BitCast(d, hn::InterleaveLower(pairs, xy_low, z_low)), d, out[0]);
+    hn::Store(hn::BitCast(d, hn::InterleaveUpper(pairs, xy_low, z_low)), d, out[4]);
+    hn::Store(hn::BitCast(d, hn::InterleaveLower(pairs, xy_high, z_high)), d, out[8]);
+    hn::Store(hn::BitCast(d, hn::InterleaveUpper(pairs, xy_high, z_high)), d, out[12]);
   }
   static HWY_INLINE hn::Vec128<std::uint8_t> pack(hn::Vec<Halves> halves) {
     return hn::Vec128<std::uint8_t>{_mm_packus_epi16(_mm256_castsi256_si128(halves.raw),
@@ -398,12 +443,85 @@ class ClusterReader {
     read_vertices<false>(vertices, first, scale, triangles, out);
   }
 
+  // Numbers of 64 bits, a lane for each axis.
+  using Longs = hn::FixedTag<std::uint64_t, 4>;
+  using LongVector = hn::Vec<Longs>;
+
+  static HWY_INLINE LongVector widened(const void* four_bytes) {
+    return LongVector{_mm256_cvtepu8_epi64(
+        _mm_cvtsi32_si128(boxtree::load<std::int32_t>(static_cast<const std::byte*>(four_bytes))))};
+  }
+
+  // The eight bytes at a place, at `y` and at `z`. One load each, as of words_at().
+  static HWY_INLINE LongVector longs_at(const std::byte* at, std::uint32_t y, std::uint32_t z) {
+    const auto x_y = _mm_loadh_pd(_mm_load_sd(reinterpret_cast<const double*>(at)),
+                                  reinterpret_cast<const double*>(at + y));
+    const auto only_z = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(at + z));
+    return LongVector{_mm256_setr_m128i(_mm_castpd_si128(x_y), only_z)};
+  }
+
+  // Those of the vertices of references `first` and on that are `wanted`, of numbers of 64 bits.
+  // False where a coordinate is out of range.
+  HWY_NOINLINE bool read_double_vertices(const Vertices& vertices, std::uint32_t wanted,
+                                         std::uint32_t first, LeafTriangles& triangles,
+                                         FloatVector (&out)[3]) {
+    HWY_ALIGN std::uint32_t group[kWideChildren], byte[kWideChildren], shift[kWideChildren];
+    hn::Store(vertices.group, Words(), group);
+    hn::Store(vertices.byte, Words(), byte);
+    hn::Store(vertices.shift, Words(), shift);
+    const Longs d;
+    const hn::FixedTag<std::int64_t, 4> integers;
+    const hn::FixedTag<double, 4> doubles;
+    const std::byte* const header = leaves_.bytes;
+    const auto trailing = widened(header + offsetof(ClusterHeader, trailing));
+    const auto base_shift = widened(header + offsetof(ClusterHeader, base_shift));
+    const auto least =
+        hn::LoadU(d, reinterpret_cast<const std::uint64_t*>(header + sizeof(ClusterHeader)));
+    const auto origin = hn::LoadU(doubles, frame_.origin_lanes.lane.data());
+    const auto scale = hn::Set(doubles, frame_.inverse_scale);
+    auto is_within = hn::Eq(scale, scale);
+    for (; wanted != 0; wanted &= wanted - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(wanted));
+      const std::uint32_t g = group[i] & (ClusterHeader::kMostGroups - 1);
+      const auto width = widened(axes_[1][g]);
+      const auto bit = hn::Add(hn::Set(d, shift[i]), widened(axes_[0][g]));
+      const std::byte* const at = leaves_.bytes + byte[i];
+      const auto in_byte = hn::And(bit, hn::Set(d, 7));
+      const std::uint32_t y = (shift[i] + axes_[0][g][1]) / 8, z = (shift[i] + axes_[0][g][2]) / 8;
+      auto bits = hn::Shr(longs_at(at, y, z), in_byte);
+      if (!is_one_load_) {
+        const auto high = longs_at(at + sizeof(std::uint64_t), y, z);
+        bits = hn::Or(bits, hn::Shl(high, hn::Sub(hn::Set(d, 64), in_byte)));  // 0 by 64
+      }
+      const auto field = hn::AndNot(hn::Shl(hn::Set(d, ~std::uint64_t{0}), width), bits);
+      const auto number = hn::Add(hn::Add(field, least), hn::Shl(widened(axes_[2][g]), base_shift));
+      // See double_of_number.
+      const auto signs = hn::BitCast(d, hn::BroadcastSignBit(hn::BitCast(integers, number)));
+      const auto magnitude = hn::Shl(hn::Xor(number, signs), trailing);
+      const auto stored = hn::BitCast(doubles, hn::Or(magnitude, hn::ShiftLeft<63>(signs)));
+      const auto position = hn::Mul(hn::Sub(stored, origin), scale);
+      is_within = hn::And(is_within, hn::Le(hn::Abs(position), hn::Set(doubles, kMaxCoordinate)));
+      hn::Store(position, doubles, doubles_[first + i]);
+      const hn::FixedTag<float, 4> floats;
+      const auto rounded =
+          hn::BitCast(hn::FixedTag<std::uint32_t, 4>(), hn::DemoteTo(floats, position));
+      triangles.number[0][first + i] = hn::ExtractLane(rounded, 0);
+      triangles.number[1][first + i] = hn::ExtractLane(rounded, 1);
+      triangles.number[2][first + i] = hn::ExtractLane(rounded, 2);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      out[k] = hn::Load(Floats(), reinterpret_cast<const float*>(triangles.number[k] + first));
+    }
+    return hn::AllTrue(doubles, hn::Or(is_within, hn::Not(hn::FirstN(doubles, 3))));
+  }
+
   // Any leaf: with quads, with most faces apart, or with far more vertices of others than usual.
   HWY_NOINLINE bool read_any(const LeafFields& faces, float scale, LeafTriangles& triangles,
                              LeafCoordinates& out) {
     const FloatVector scales = hn::Set(Floats(), scale);
     const std::uint32_t is_new = faces.new_thirds | faces.new_others << kLeafFaces;
     auto corrupt = join_strip(set(faces.fields), triangles).corrupt;
+    bool are_read = true;
     // References from `first` on, of which lane i gets number `slot`, to numbers from `at` on.
     // Lanes that are not `wanted` get any vertex of the cluster.
     const auto read_group = [&](std::uint32_t first, WordVector slot, WordMask wanted,
@@ -419,7 +537,11 @@ class ClusterReader {
           faces, olds, hn::TestBit(hn::Shr(small(here), slot), small(1)),
           hn::Add(permute(ranks(here), slot), small(before)), hn::Add(slot, small(first)));
       corrupt = hn::Or(corrupt, hn::IfThenElseZero(wanted, vertices.corrupt));
-      read_wide_vertices(vertices, at, scales, triangles, position);
+      if (view_.numbers != ClusterNumbers::kF64) {
+        read_wide_vertices(vertices, at, scales, triangles, position);
+      } else if (!read_double_vertices(vertices, bits_of_words(wanted), at, triangles, position)) {
+        are_read = false;
+      }
     };
     const std::uint32_t apart_others = 2 * faces.aparts;
     FloatVector group[4][3];
@@ -435,8 +557,12 @@ class ClusterReader {
       read_group(kLeafFaces + apart_others, slot, lanes_with(small(faces.quads), kLaneBits),
                  LeafTriangles::kFourths, group[3]);
     }
-    if (!hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())))) return false;
-    name_lanes(faces.quads, triangles);
+    if (!are_read || !hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())))) return false;
+    if (faces.quads != 0) {
+      name_lanes(faces.quads, triangles);
+    } else {
+      triangles.count = kLeafFaces;
+    }
     const FaceCorners corners(triangles);
     for (std::size_t k = 0; k < 3; ++k) {
       const FloatVector of_axis[4] = {group[0][k], group[1][k], group[has_more ? 2 : 1][k],
@@ -460,11 +586,14 @@ class ClusterReader {
   }
 
   const ClusterView& view_;
+  const Frame& frame_;
+  DoublePositions& doubles_;
   LeafTable leaves_;
   const Avx512LeafReader read_by_avx512_;  // null where the machine has none
   std::uint32_t groups_ = 0;
   const std::byte* bases_ = nullptr;
-  bool is_narrow_ = false;  // offsets of x and y end in the first 32 and 64 bits of a vertex
+  bool is_narrow_ = false;    // offsets of x and y end in the first 32 and 64 bits of a vertex
+  bool is_one_load_ = false;  // offsets of 64 bits take no more than kMostBitsRead
   // Each in all lanes.
   HWY_ALIGN std::uint32_t origin_[3][kWideChildren];
   HWY_ALIGN std::uint32_t base_shift_[3][kWideChildren];
@@ -475,6 +604,8 @@ class ClusterReader {
   HWY_ALIGN std::uint8_t stride_[ClusterHeader::kMostGroups];
   HWY_ALIGN std::uint8_t start_low_[ClusterHeader::kMostGroups];
   HWY_ALIGN std::uint8_t start_high_[ClusterHeader::kMostGroups];
+  // Of numbers of 64 bits: bits before, widths and bases of x, y and z.
+  HWY_ALIGN std::uint8_t axes_[3][ClusterHeader::kMostGroups][4];
   Avx512Cluster sixteen_;
 };
 

@@ -32,7 +32,7 @@ HWY_INLINE bool is_zero(GroupByteVector numbers) {
   return hn::AllTrue(GroupBytes(), hn::Eq(numbers, hn::Zero(GroupBytes())));
 }
 
-/// The same as boxtree::find_groups, of numbers of 32 bits. False if the groups are corrupt.
+/// The same as boxtree::find_groups. False if the groups are corrupt.
 /// Precondition: they have at most kFastGroupSize vertices.
 HWY_INLINE bool find_groups(const Cluster& cluster, GroupLanes& out) {
   const ClusterHeaderView header = cluster.header();
@@ -51,8 +51,8 @@ HWY_INLINE bool find_groups(const Cluster& cluster, GroupLanes& out) {
     out.width[k] = hn::IfThenElseZero(is_group, hn::Add(wider, hn::Set(bytes, header.width(k))));
   }
   out.stride = hn::Add(hn::Add(out.width[0], out.width[1]), out.width[2]);
-  constexpr std::uint8_t kMostBits = 32;
-  if (!is_zero(above(hn::Max(hn::Max(out.width[0], out.width[1]), out.width[2]), kMostBits))) {
+  const auto most = static_cast<std::uint8_t>(cluster.number_bits);
+  if (!is_zero(above(hn::Max(hn::Max(out.width[0], out.width[1]), out.width[2]), most))) {
     return false;
   }
   // Where they start: sums of what those before take.

@@ -31,7 +31,7 @@ class LeafFloats {
         lane_code_{0, 2, 4, 6, 8, 10, 12, 14}
 #if BOXTREE_HAS_EIGHT_LANES
         ,
-        clusters_(reader_.clusters())
+        clusters_(reader_.clusters(), reader_.frame(), doubles_)
 #endif
   {
   }
@@ -79,7 +79,7 @@ class LeafFloats {
   }
 
   /// Bounds how far the coordinates of a leaf are off: mostly by underflow alone when they were
-  /// gathered, by half an ulp of the largest otherwise.
+  /// gathered from floats, by half an ulp of the largest otherwise.
   [[nodiscard]] float corner_error() const {
     return is_direct_ ? floats_.direct_rounding : floats_.rounding;
   }
@@ -145,6 +145,19 @@ class LeafFloats {
     ClusterReader::find_numbers(leaf, number);
     for (std::uint32_t lane = 0; lane < count_; ++lane)
       out.face[lane] = first_ + leaf.face_and_half(lane) / 2;
+    out.count = count_;
+    if (floats_.is_f64) {
+      for (std::uint32_t lane = 0; lane < count_; ++lane) {
+        std::uint32_t references[3];
+        leaf.find_corners(lane, references);
+        for (std::size_t c = 0; c < 3; ++c) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            out.coordinate[c][k][lane] = doubles_[references[c]][k];
+          }
+        }
+      }
+      return true;
+    }
     const hn::CappedTag<double, 4> doubles;
     const hn::Rebind<std::int32_t, decltype(doubles)> integers;
     const hn::Rebind<float, decltype(doubles)> floats;
@@ -165,7 +178,6 @@ class LeafFloats {
         }
       }
     }
-    out.count = count_;
     return hn::AllTrue(doubles, is_within);
   }
 #endif
@@ -203,7 +215,7 @@ class LeafFloats {
   }
 
 #if BOXTREE_HAS_EIGHT_LANES
-  // Of arrays: a corner is a vector. Its fourth number is the next one of the array, see
+  // Of arrays of floats: a corner is a vector. Its fourth number is the next one of the array, see
   // find_triangles().
   HWY_INLINE bool exact_triangle_of_arrays(std::uint32_t lane, Triangle& triangle) {
     const hn::CappedTag<double, AxisLanes::kCount> d;
@@ -231,7 +243,16 @@ class LeafFloats {
   // The triangle of a lane of a leaf that was gathered. Not inlined, for the size of the code.
   HWY_NOINLINE bool exact_triangle(std::uint32_t lane, Triangle& triangle) {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (!reader_.has_clusters()) return exact_triangle_of_arrays(lane, triangle);
+    if (!reader_.has_clusters() && !floats_.is_f64) return exact_triangle_of_arrays(lane, triangle);
+    if (reader_.has_clusters() && floats_.is_f64) {
+      std::uint32_t references[3];
+      leaf_->triangles.find_corners(lane, references);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double(&position)[4] = doubles_[references[c]];
+        triangle.corner[c] = {position[0], position[1], position[2]};
+      }
+      return true;
+    }
 #endif
     const bool is_grid = reader_.is_grid();
     const double scale = reader_.stored_scale();
@@ -262,8 +283,11 @@ class LeafFloats {
     }
     const bool is_read =
         mesh_.corner_bytes == 2 ? find_triangles<std::uint16_t>() : find_triangles<std::uint32_t>();
-    if (is_read) gather_positions();
-    return is_read;
+    if (!is_read) return false;
+    if (floats_.is_f64) return gather_doubles();
+    gather_positions(reinterpret_cast<const float*>(mesh_.positions), start_, floats_.scale,
+                     floats_.shift);
+    return true;
   }
 
 #if BOXTREE_HAS_EIGHT_LANES
@@ -292,9 +316,8 @@ class LeafFloats {
       return leaf_->triangles.read_corners(lane, reader_.clusters().numbers, out);
 #endif
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto p = boxtree::load<std::array<float, 3>>(
-          mesh_.positions + start_[std::size_t{3} * lane + c] * sizeof(float));
-      for (std::size_t k = 0; k < 3; ++k) out[c][k] = double{p[k]};
+      const Eigen::Vector3d p = position_of(mesh_, start_[std::size_t{3} * lane + c] / 3);
+      for (std::size_t k = 0; k < 3; ++k) out[c][k] = p[static_cast<Eigen::Index>(k)];
     }
   }
 
@@ -353,13 +376,46 @@ class LeafFloats {
     // The other lanes of vectors are read, too.
     for (; count % kWideChildren != 0; ++count) std::fill_n(start_ + 3 * count, 3, 0);
   }
-  HWY_INLINE void gather_positions() {
-    const auto* positions = reinterpret_cast<const float*>(mesh_.positions);
+  // Those that are doubles: placed in tree space as LeafReader does. False where one is out of
+  // range.
+  HWY_NOINLINE bool gather_doubles() {
+#if HWY_HAVE_FLOAT64
+    static constexpr float kNoShift[3] = {};
+    HWY_ALIGN float row[3 * kMaxLeafTriangles][4];
+    std::uint32_t rows[3 * kMaxLeafTriangles];
+    for (std::uint32_t i = 0; i < 3 * kMaxLeafTriangles; ++i) rows[i] = 4 * i;
+    const hn::CappedTag<double, 4> d;
+    const hn::Rebind<float, decltype(d)> floats;
+    const auto* const positions = reinterpret_cast<const double*>(mesh_.positions);
+    const auto scale = hn::Set(d, reader_.stored_scale());
+    const auto most = hn::Set(d, kMaxCoordinate);
+    const std::size_t corners = 3 * kWideChildren * groups();
+    for (std::size_t k = 0; k < 4; k += hn::MaxLanes(d)) {
+      const auto origin = hn::LoadU(d, reader_.frame().origin_lanes.lane.data() + k);
+      auto is_within = hn::Eq(scale, scale);
+      for (std::size_t i = 0; i < corners; ++i) {
+        const auto stored = hn::LoadU(d, positions + start_[i] + k);
+        const auto position = hn::Mul(hn::Sub(stored, origin), scale);
+        is_within = hn::And(is_within, hn::Le(hn::Abs(position), most));
+        hn::Store(hn::DemoteTo(floats, position), floats, row[i] + k);
+      }
+      // The fourth number is the next one of the array.
+      if (!hn::AllTrue(d, hn::Or(is_within, hn::Not(hn::FirstN(d, 3 - k))))) return false;
+    }
+    gather_positions(row[0], rows, 1, kNoShift);
+    return true;
+#else
+    return false;
+#endif
+  }
+  // `start`: of each corner, in floats. Not inlined, for size.
+  HWY_NOINLINE void gather_positions(const float* rows, const std::uint32_t* start, float scale,
+                                     const float (&shift)[3]) {
     for (std::size_t group = 0; group < groups(); ++group) {
       for (std::size_t c = 0; c < 3; ++c) {
         transpose(
-            positions, [&](std::size_t lane) { return start_[3 * lane + c]; }, c,
-            group * kWideChildren);
+            rows, [&](std::size_t lane) { return start[3 * lane + c]; }, c, group * kWideChildren,
+            scale, shift);
       }
     }
   }
@@ -375,9 +431,9 @@ class LeafFloats {
   // Corner `corner` of eight lanes from `first` on; that of lane i is start(i) floats after `rows`.
   template <class Start>
   HWY_INLINE void transpose(const float* rows, const Start& start, std::size_t corner,
-                            std::size_t first) {
+                            std::size_t first, float of_scale, const float (&shift)[3]) {
     const Floats d;
-    const FloatVector scale = hn::Set(Floats(), floats_.scale);
+    const FloatVector scale = hn::Set(Floats(), of_scale);
     const hn::Repartition<std::uint64_t, Floats> pairs;
     for (std::size_t part = 0; part < kParts; ++part) {
       const std::size_t lane = first + part * kLanes;
@@ -390,8 +446,8 @@ class LeafFloats {
       const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
       const auto store = [&](std::size_t axis, auto values) {
         // The product is exact, so that it does not matter whether it is rounded.
-        hn::Store(hn::MulSub(hn::BitCast(d, values), scale, hn::Set(d, floats_.shift[axis])),
-                  Floats(), &leaf_->coordinate[corner][axis][lane]);
+        hn::Store(hn::MulSub(hn::BitCast(d, values), scale, hn::Set(d, shift[axis])), Floats(),
+                  &leaf_->coordinate[corner][axis][lane]);
       };
       store(0, hn::InterleaveLower(pairs, xy01, xy23));
       store(1, hn::InterleaveUpper(pairs, xy01, xy23));
@@ -431,6 +487,7 @@ class LeafFloats {
   std::uint8_t lane_code_[kMaxLeafTriangles];
   TriangleBatch batch_;
 #if BOXTREE_HAS_EIGHT_LANES
+  HWY_ALIGN DoublePositions doubles_;  // of the current leaf of a cluster
   ClusterReader clusters_;
   std::uint32_t ahead_ = kNoLeaf;  // the leaf that was read ahead, which is in the other one
   Leaf leaves_[2];

@@ -111,6 +111,9 @@ struct LeafTable {
   }
 };
 
+/// Positions of references as doubles, in tree space: x, y, z and a number that means nothing.
+using DoublePositions = double[kMostLeafReferences][4];
+
 /// Coordinates as floats: [corner][axis][triangle].
 using LeafCoordinates = float[3][3][kMaxLeafTriangles];
 
@@ -124,8 +127,9 @@ struct LeafTriangles {
   std::uint8_t code[2 * kLeafFaces];                // of each lane: 2 * face + half
   alignas(32) std::uint32_t step[kLeafFaces];       // to each face
   alignas(32) std::uint32_t corner[2][kLeafFaces];  // references of its first two corners
-  // [axis]: whole numbers, or bits of floats. Third corners of all faces, a lane each; after them,
-  // the other two of those that are apart, and from kFourths on the fourth corners of quads.
+  // [axis]: whole numbers, or bits of floats (of doubles, rounded). Third corners of all faces, a
+  // lane each; after them, the other two of those that are apart, and from kFourths on the fourth
+  // corners of quads.
   alignas(64) std::uint32_t number[3][kMostLeafReferences];
 
   /// Twice the face of a lane, and 1 more for the second triangle of a quad.
