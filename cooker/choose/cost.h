@@ -30,8 +30,7 @@ struct CodecCost {
 };
 
 /// Whether a codec has steps of its own with a store of positions of `precision`. Binary codecs
-/// have arrays in place of exact, and read f64 as they read f32; wide ones read f64 without
-/// vectors. No grid has positions of f64.
+/// have arrays in place of exact, and read f64 as they read f32. No grid has positions of f64.
 [[nodiscard]] constexpr bool has_cost(CodecId codec, GeometryId geometry,
                                       Precision precision) noexcept {
   if (!is_wide(codec)) return geometry != GeometryId::kExact && precision == Precision::kF32;

@@ -30,7 +30,7 @@ TEST(Cost, EveryCodecAndStoreHasConstants) {
   }
 }
 
-// Vectors read neither f64 arrays nor their clusters.
+// Leaves of doubles take twice the bytes, and are rounded to floats.
 TEST(Cost, PositionsOfF64TakeTheirOwnTime) {
   const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {3, 3}}};
   for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
