@@ -183,6 +183,9 @@ class Account {
         return "so that a query for what is left out is told why";
       case SectionKind::kBlob:
         return "the file, compressed whole";
+      case SectionKind::kPack:
+      case SectionKind::kMembers:
+        return {};  // of packs, which are not cooked
     }
     return {};
   }

@@ -137,7 +137,7 @@ Result<std::optional<CookCache::Entry>> HttpCache::read_output(const Entry& entr
     return std::optional<Entry>();
   }
   succeeded(Use::kRead);
-  if (Status status = file->commit(); !status) return status.error();
+  if (Status kept = file->commit(); !kept) return kept.error();
   return std::optional(entry);
 }
 
