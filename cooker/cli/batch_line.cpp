@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cli/json_output.h"
+#include "cooker/system/path.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -216,7 +217,7 @@ class KeyFields {
     return true;
   }
   static bool convert(const Json& value, std::filesystem::path& out) {
-    if (value.is_string()) out = value.get<std::string>();
+    if (value.is_string()) out = named_path(value.get<std::string>());
     return value.is_string();
   }
   static bool convert(const Json& value, bool& out) {

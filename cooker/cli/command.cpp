@@ -16,6 +16,7 @@
 #include "cooker/cli/output.h"
 #include "cooker/cli/response_file.h"
 #include "cooker/cli/usage_message.h"
+#include "cooker/system/path.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -324,8 +325,21 @@ Option* Command::add(CLI::Option* parsed) {
   return options_.emplace_back(std::make_unique<Option>(parsed)).get();
 }
 
+// CLI11 leaves it to the C++ library what characters of a path are.
 template <class T>
 Option* Command::add_option(const std::string& name, T& out, const std::string& help) {
+  if constexpr (std::is_same_v<T, std::filesystem::path>) {
+    return add(app_->add_option_function<std::string>(
+        name, [&out](const std::string& text) { out = named_path(text); }, help));
+  } else if constexpr (std::is_same_v<T, std::vector<std::filesystem::path>>) {
+    return add(app_->add_option_function<std::vector<std::string>>(
+        name,
+        [&out](const std::vector<std::string>& texts) {
+          out.clear();
+          for (const std::string& text : texts) out.push_back(named_path(text));
+        },
+        help));
+  }
   Option* const option = add(app_->add_option(name, out, help));
   if constexpr (std::is_arithmetic_v<T>) {
     option->expect_number<T>();

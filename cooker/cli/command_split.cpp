@@ -22,6 +22,7 @@
 #include "cooker/cli/step_printer.h"
 #include "cooker/import/file_error.h"
 #include "cooker/proof/pack_proof.h"
+#include "cooker/system/path.h"
 #include "cooker/text/counted.h"
 #include "cooker/write/atomic_file.h"
 #include "cooker/write/outputs.h"
@@ -79,7 +80,7 @@ Status write_member(const File& pack, const Chosen& member) {
     return Error{status.code(), "member " + member.name + ": " + status.error().detail};
   }
   std::error_code error;
-  std::filesystem::create_directories(folder_of(member.output), error);
+  make_folders(folder_of(member.output), error);
   if (error) {
     return Error{Errc::kWriteFailed,
                  folder_of(member.output).string() + ": cannot be made: " + error.message()};

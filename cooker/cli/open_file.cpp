@@ -12,6 +12,7 @@
 #include "cooker/cli/exit_status.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/system/input_failure.h"
+#include "cooker/system/path.h"
 #include "cooker/text/nearest_name.h"
 #include "cooker/text/number_of.h"
 #include "runtime/file/open_file.h"
@@ -57,7 +58,7 @@ Result<OpenedFile> open_file(const std::filesystem::path& path) {
   Result<File> blob = open_blob(path.string());
   if (!blob) return with_remedy(blob.error());
   std::error_code ignored;
-  return OpenedFile{std::move(*blob), std::filesystem::file_size(path, ignored)};
+  return OpenedFile{std::move(*blob), size_of_file(path, ignored)};
 }
 
 Result<std::uint32_t> find_tree(const File& file, const WhichTree& wanted) {

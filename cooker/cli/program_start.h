@@ -6,8 +6,8 @@ namespace boxtree::cooker {
 
 /// Makes the stack as large as queries need it, so that too little memory is found here. On
 /// Windows, standard streams are made streams of bytes in UTF-8, and the words of the command line
-/// UTF-8 that lives until the program ends; names of files among them are ASCII so far, since
-/// mingw-w64's std::filesystem::path takes others for Latin-1. Throws std::bad_alloc.
+/// UTF-8 that lives until the program ends, of which named_path() makes names of files. Throws
+/// std::bad_alloc.
 void prepare_process(int& argc, char**& argv);
 
 }  // namespace boxtree::cooker

@@ -5,6 +5,7 @@
 
 #include "cooker/import/text_tokens.h"
 #include "cooker/import/whole_file.h"
+#include "cooker/system/path.h"
 
 namespace boxtree::cooker {
 
@@ -15,7 +16,7 @@ Result<std::vector<std::string>> with_response_files(const std::vector<std::stri
       all.push_back(word);
       continue;
     }
-    const Result<std::string> text = read_whole_file(word.substr(1), kMaxFaceListBytes);
+    const Result<std::string> text = read_whole_file(named_path(word.substr(1)), kMaxFaceListBytes);
     if (!text) return text.error();
     for (std::string_view rest = *text; !rest.empty();) {
       const std::string_view line = take_line(rest);

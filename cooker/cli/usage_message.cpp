@@ -12,6 +12,7 @@
 #include "cooker/cli/command_app.h"
 #include "cooker/cli/output.h"
 #include "cooker/import/import.h"
+#include "cooker/system/path.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -155,7 +156,7 @@ std::string meant_output(const Command& command, const std::vector<std::string>&
   if (!rest.empty()) return is_option(rest.back()) ? std::string() : rest.back();
   const std::vector<std::string> inputs = operands(command);
   if (inputs.size() < 2) return {};
-  const std::string ending = std::filesystem::path(inputs.back()).extension().string();
+  const std::string ending = named_path(inputs.back()).extension().string();
   return ending.empty() || is_mesh_ending(ending.substr(1)) ? std::string() : inputs.back();
 }
 
@@ -222,7 +223,7 @@ std::string fault(const CLI::App& app, const Command& command, const CLI::Error&
 
 // A file in the place of a command: what is most likely wanted of it; empty of other words.
 std::string command_for(const std::string& word) {
-  const std::filesystem::path file(word);
+  const std::filesystem::path file = named_path(word);
   const std::string ending = file.extension().string();
   if (ending == ".bxt") return "boxtree info " + word;
   if (ending.empty() || !is_mesh_ending(ending.substr(1))) return {};

@@ -7,6 +7,7 @@
 
 #include "cooker/farm/folder_cache.h"
 #include "cooker/farm/http_cache.h"
+#include "cooker/system/path.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -60,7 +61,7 @@ bool is_url(const std::string& place) {
 
 Result<std::unique_ptr<CookCache>> open_cache(const std::string& place, std::uint64_t most_bytes) {
   if (is_url(place)) return allocated(HttpCache::open(place));
-  return allocated(FolderCache::open(place, most_bytes));
+  return allocated(FolderCache::open(named_path(place), most_bytes));
 }
 
 }  // namespace boxtree::cooker

@@ -5,10 +5,12 @@
 #include <array>
 #include <map>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "cooker/system/path.h"
 #include "cooker/text/json.h"
 #include "cooker/text/nearest_name.h"
 
@@ -79,7 +81,7 @@ class LineReader {
     const Json* const value = object.find(key);
     if (value == nullptr) return {};
     if (Status status = check_text(*value, key); !status) return status;
-    out = value->get<std::string>();
+    out = named_path(value->get<std::string>());
     if (out == "-") return fault(fmt::format("{}: expected a file, found -", key));
     return {};
   }
@@ -94,7 +96,11 @@ class LineReader {
     }
     for (const Json& value : *values) {
       if (Status status = check_text(value, key); !status) return status;
-      out.emplace_back(value.get<std::string>());
+      if constexpr (std::is_same_v<T, fs::path>) {
+        out.push_back(named_path(value.get<std::string>()));
+      } else {
+        out.push_back(value.get<std::string>());
+      }
       if (out.back() == "-") return fault(fmt::format("{}: expected a file, found -", key));
     }
     return {};

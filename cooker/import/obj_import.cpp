@@ -19,6 +19,7 @@
 #include "cooker/import/obj_statements.h"
 #include "cooker/import/source_files.h"
 #include "cooker/import/text_tokens.h"
+#include "cooker/system/path.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -271,7 +272,7 @@ FaceFault ObjReader<T>::fault_of(std::string_view word, std::size_t corner) cons
 void find_libraries(const SourceFile& source, const std::vector<std::string>& names,
                     ImportReport& report) {
   const auto path_of = [&](std::string_view name) {
-    return tidied(source.path().parent_path() / fs::path(name));
+    return tidied(source.path().parent_path() / named_path(name));
   };
   const auto add_to = [](std::vector<fs::path>& files, const fs::path& library) {
     if (std::find(files.begin(), files.end(), library) == files.end()) files.push_back(library);
@@ -280,7 +281,8 @@ void find_libraries(const SourceFile& source, const std::vector<std::string>& na
     if (source.bytes()) return false;  // beside no file
     const fs::path library = path_of(name);
     std::error_code ignored;
-    if (!fs::is_regular_file(library, ignored) || !SourceStream::open(library).ok()) return false;
+    const bool is_file = fs::is_regular_file(status_of(library, ignored));
+    if (!is_file || !SourceStream::open(library).ok()) return false;
     add_to(report.files_read, library);
     return true;
   };

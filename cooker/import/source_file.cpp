@@ -6,6 +6,7 @@
 
 #include "cooker/import/whole_file.h"
 #include "cooker/system/input_failure.h"
+#include "cooker/system/path.h"
 
 namespace boxtree::cooker {
 
@@ -28,7 +29,7 @@ FileHandle SourceFile::open() const {
 Result<std::uint64_t> SourceFile::size() const {
   if (bytes_) return std::uint64_t{bytes_->size()};
   std::error_code failed;
-  const std::uintmax_t size = std::filesystem::file_size(path_, failed);
+  const std::uintmax_t size = size_of_file(path_, failed);
   if (failed) return input_failure(title_, failed.value());
   return std::uint64_t{size};
 }
@@ -41,9 +42,7 @@ Result<std::string> SourceFile::read() const {
 std::filesystem::path tidied(const std::filesystem::path& path) {
   std::filesystem::path normal = path.lexically_normal();
   std::error_code error;
-  return !std::filesystem::exists(path, error) || std::filesystem::equivalent(path, normal, error)
-             ? normal
-             : path;
+  return !exists(status_of(path, error)) || is_one_file(path, normal, error) ? normal : path;
 }
 
 }  // namespace boxtree::cooker

@@ -13,6 +13,7 @@
 #include "cooker/import/whole_file.h"
 #include "cooker/system/file_handle.h"
 #include "cooker/system/input_failure.h"
+#include "cooker/system/path.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -30,7 +31,7 @@ Status check_source_file(const SourceFile& source, const std::string& named_in) 
   if (source.bytes()) return source.bytes()->empty() ? Status(empty) : Status();
   const fs::path& path = source.path();
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
+  const fs::file_status status = status_of(path, error);
   if (!fs::exists(status)) return input_failure(path.string(), error.value(), named_in);
   if (fs::is_directory(status)) return unreadable(path, "is a directory, not a mesh file");
   // A pipe or a device cannot be read twice, and assimp reads most files more than once.

@@ -12,6 +12,7 @@
 
 #include "cooker/system/file_handle.h"
 #include "cooker/system/input_failure.h"
+#include "cooker/system/path.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -46,7 +47,7 @@ Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint
   std::string text;
   // Without this, the text takes twice its size while it grows for the last time.
   std::error_code none;
-  const std::uintmax_t size = std::filesystem::file_size(path, none);
+  const std::uintmax_t size = size_of_file(path, none);
   if (!none) text.reserve(static_cast<std::size_t>(std::min<std::uintmax_t>(size, most)));
   const Status status = read_chunks(
       path, most, [&text](const char* bytes, std::size_t count) { text.append(bytes, count); },

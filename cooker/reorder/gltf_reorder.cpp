@@ -18,6 +18,7 @@
 #include "cooker/import/gltf_nesting.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/reorder/reorder.h"
+#include "cooker/system/path.h"
 #include "cooker/text/percent.h"
 
 namespace boxtree::cooker {
@@ -222,7 +223,7 @@ class GltfReorder {
         bytes = *data;
       } else {
         Result<std::string> file =
-            read_whole_file(reordering_.from / percent_decoded(uri), kAnyBytes);
+            read_whole_file(reordering_.from / named_path(percent_decoded(uri)), kAnyBytes);
         if (!file) return file.error();
         bytes = std::move(*file);
       }

@@ -15,6 +15,7 @@
 #include "cooker/import/source_mesh.h"
 #include "cooker/import/text_tokens.h"
 #include "cooker/reorder/reorder.h"
+#include "cooker/system/path.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -199,7 +200,8 @@ class ObjReorder {
     for (const std::string& names : libraries_) {
       // One name with blanks, or several names.
       std::error_code ignored;
-      if (std::filesystem::is_regular_file(reordering_.from / names, ignored)) {
+      if (std::filesystem::is_regular_file(
+              status_of(reordering_.from / named_path(names), ignored))) {
         out_.print("mtllib {}\n", reordering_.moved(names));
         continue;
       }

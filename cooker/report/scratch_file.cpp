@@ -15,7 +15,8 @@ Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
   static constexpr const char* kTitle = "a temporary file";
   Result<TemporaryFile> file = TemporaryFile::create_in_memory(kTitle);
   if (!file) return file.error();
-  if (!write_all(file->descriptor(), bytes)) return write_failure(kTitle, "cannot write");
+  if (!write_all(file->descriptor(), bytes))
+    return write_failure(std::string(kTitle), "cannot write");
   return ScratchFile(std::move(*file));
 }
 

@@ -12,6 +12,7 @@
 
 #include "cooker/quantise/grid.h"
 #include "cooker/report/shell_word.h"
+#include "cooker/system/path.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -251,7 +252,7 @@ std::string cook_command(const MeshTradeoff& mesh, const TradePoint& point) {
   std::string output = "FILE.bxt";
   if (!mesh.file_name.empty()) {
     source = shell_word(mesh.file_name);
-    output = shell_word(std::filesystem::path(mesh.file_name).stem().string() + ".bxt");
+    output = shell_word(named_path(mesh.file_name).stem().string() + ".bxt");
   }
   return fmt::format("boxtree cook {} -o {} {}", source, output, cook_options(mesh, point));
 }

@@ -13,6 +13,7 @@
 
 #include "cooker/import/file_error.h"
 #include "cooker/system/input_failure.h"
+#include "cooker/system/path.h"
 #include "format/limits.h"
 
 namespace boxtree::cooker {
@@ -67,7 +68,7 @@ Result<SourceScene> import_listed(const fs::path& path, const ImportOptions& opt
 // the profile.
 Status check_named(const Profile& profile, std::string_view key, const Stated<fs::path>& file) {
   std::error_code error;
-  if (fs::status(file.value, error).type() != fs::file_type::not_found) return {};
+  if (status_of(file.value, error).type() != fs::file_type::not_found) return {};
   const std::string path = profile.path.string();
   return in_file(fmt::format("{}:{}: {}", path, file.line, key),
                  input_failure(file.value.string(), ENOENT, path));

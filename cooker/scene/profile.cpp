@@ -14,6 +14,7 @@
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/profile_fields.h"
 #include "cooker/scene/profile_pose.h"
+#include "cooker/system/path.h"
 #include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
@@ -77,7 +78,7 @@ class ProfileReader {
   void refuse_keys_outside_tables(const TomlTable& root);
   void read_instance(const Header& header);
   Stated<std::filesystem::path> beside(const Stated<std::string>& file) const {
-    return {profile_.path.parent_path() / file.value, file.line};
+    return {profile_.path.parent_path() / named_path(file.value), file.line};
   }
 
   Profile& profile_;

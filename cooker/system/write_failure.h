@@ -11,12 +11,15 @@
 
 namespace boxtree::cooker {
 
-/// kWriteFailed with the path, the failed operation, and the reason in errno; kOutOfMemory if it is
-/// that.
-[[nodiscard]] inline Error write_failure(const std::filesystem::path& path, const char* what) {
+/// kWriteFailed with the name of the file or stream, the failed operation, and the reason in errno;
+/// kOutOfMemory if it is that.
+[[nodiscard]] inline Error write_failure(const std::string& name, const char* what) {
   const int reason = errno;  // before another call changes it
   return {reason == ENOMEM ? Errc::kOutOfMemory : Errc::kWriteFailed,
-          path.string() + ": " + what + ": " + std::generic_category().message(reason)};
+          name + ": " + what + ": " + std::generic_category().message(reason)};
+}
+[[nodiscard]] inline Error write_failure(const std::filesystem::path& path, const char* what) {
+  return write_failure(path.string(), what);
 }
 
 }  // namespace boxtree::cooker

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cooker/system/descriptor.h"
+#include "cooker/system/path.h"
 #include "cooker/system/write_all.h"
 #include "cooker/system/write_failure.h"
 #include "runtime/file/mapping.h"
@@ -65,7 +66,7 @@ Status AtomicFile::write(Bytes bytes) {
 
 bool AtomicFile::loses_bytes() const {
   std::error_code error;
-  if (!replaces_ || (fs::file_size(target_, error) == 0 && !error)) return false;
+  if (!replaces_ || (size_of_file(target_, error) == 0 && !error)) return false;
   const Result<Mapping> before = Mapping::map(target_.string());
   const Result<Mapping> after = Mapping::map(descriptor(), target_.string());
   return !before || !after || !std::ranges::equal(before->bytes(), after->bytes());

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "cooker/system/path.h"
 #include "cooker/system/write_failure.h"
 #include "cooker/write/atomic_file.h"
 #include "cooker/write/temporary_name.h"
@@ -31,7 +32,7 @@ Result<AtomicFile> AtomicFile::create_beside(const fs::path& given) {
   const Result<fs::path> target = follow_links(given);
   if (!target) return target.error();
   std::error_code error;
-  const fs::file_status status = fs::status(*target, error);
+  const fs::file_status status = status_of(*target, error);
   const bool exists = fs::exists(status);
   if (!exists && status.type() != fs::file_type::not_found) {
     return Error{Errc::kWriteFailed,
@@ -60,7 +61,7 @@ Status AtomicFile::replace_target() {
   const std::wstring to = wide_path(target_.string());
   const std::string aside_name = temporary_name(target_.filename().string());
   if (aside_name.empty()) return write_failure(target_, "no random numbers");
-  const std::wstring aside = wide_path((folder_of(target_) / aside_name).string());
+  const std::wstring aside = wide_path((folder_of(target_) / named_path(aside_name)).string());
   if (replaces_ && ::ReplaceFileW(to.c_str(), from.c_str(), aside.c_str(),
                                   REPLACEFILE_IGNORE_MERGE_ERRORS, nullptr, nullptr) != 0) {
     temporary_.release_name();

@@ -5,13 +5,15 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "cooker/system/file_handle.h"
+#include "cooker/system/path.h"
 #include "cooker/write/atomic_file.h"
 #include "format/container.h"
 
@@ -33,7 +35,7 @@ fs::path real_name(const fs::path& path) {
 
 bool is_same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
-  const bool are_one = fs::equivalent(a, b, error);
+  const bool are_one = is_one_file(a, b, error);
   if (!error) return are_one;
   const fs::path name = real_name(a);
   return !name.empty() && name == real_name(b);
@@ -47,13 +49,12 @@ constexpr std::size_t kMostOfDepfile = std::size_t{1} << 24;
 // The first bytes of a regular file; empty if it has none or cannot be read.
 std::string start_of(const fs::path& path, std::size_t most) {
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) return {};
-  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (!fs::is_regular_file(status_of(path, error))) return {};
+  const std::uintmax_t bytes = size_of_file(path, error);
   if (error) return {};
   std::string start(static_cast<std::size_t>(std::min<std::uintmax_t>(bytes, most)), '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(file.gcount()));
+  const FileHandle file = open_to_read(path);
+  start.resize(file ? std::fread(start.data(), 1, start.size(), file.get()) : 0);
   return start;
 }
 

@@ -8,6 +8,7 @@
 
 #include "cooker/import/file_error.h"
 #include "cooker/proof/pack_proof.h"
+#include "cooker/system/path.h"
 #include "cooker/text/utf8.h"
 #include "format/pack.h"
 #include "runtime/file/open_file.h"
@@ -121,7 +122,7 @@ fs::path member_path(std::string_view name) {
     path += '/';
     name.remove_prefix(part.size() + 1);
   }
-  return path + ".bxt";
+  return named_path(path + ".bxt");
 }
 
 }  // namespace boxtree::cooker

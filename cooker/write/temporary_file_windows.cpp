@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/system/path.h"
 #include "cooker/system/write_failure.h"
 #include "cooker/write/temporary_file.h"
 #include "cooker/write/temporary_name.h"
@@ -22,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 Error cannot_create(const fs::path& folder, const std::string& name, DWORD reason) {
-  const std::string path = (folder / name).string();
+  const std::string path = (folder / named_path(name)).string();
   std::error_code error;
-  if (reason == ERROR_PATH_NOT_FOUND && !fs::exists(folder, error)) {
+  if (reason == ERROR_PATH_NOT_FOUND && !fs::exists(status_of(folder, error))) {
     return {Errc::kWriteFailed,
             fmt::format("{}: the folder {} is not there; make it first", path, folder.string())};
   }
@@ -33,13 +34,17 @@ Error cannot_create(const fs::path& folder, const std::string& name, DWORD reaso
                       std::system_category().message(static_cast<int>(reason)))};
 }
 
-// Files that cannot be deleted stay.
+// Files that cannot be deleted stay. Others may have names that no text stands for: halves of
+// surrogate pairs.
 void sweep(const fs::path& folder, const std::string& name) {
   const std::string prefix = temporary_prefix(name);
+  const std::wstring wide_prefix = named_path(prefix).native();
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (!is_temporary_name(entry->path().filename().string(), prefix)) continue;
+    const fs::path found = entry->path().filename();
+    if (!found.native().starts_with(wide_prefix)) continue;
+    if (!is_temporary_name(found.string(), prefix)) continue;
     static_cast<void>(::DeleteFileW(wide_path(entry->path().string()).c_str()));
   }
 }
@@ -67,8 +72,8 @@ Result<TemporaryFile> TemporaryFile::create(const fs::path& folder, std::string_
 
 Status TemporaryFile::choose_name() {
   const std::string name = temporary_name(name_);
-  if (name.empty()) return write_failure(folder_ / name_, "no random numbers");
-  path_ = folder_ / name;
+  if (name.empty()) return write_failure(folder_ / named_path(name_), "no random numbers");
+  path_ = folder_ / named_path(name);
   return {};
 }
 
@@ -84,7 +89,7 @@ Status TemporaryFile::create_named(mode_t /*mode*/) {
   if (descriptor_ >= 0) return {};
   ::CloseHandle(file);
   errno = EMFILE;
-  return write_failure(folder_ / name_, "cannot create");
+  return write_failure(folder_ / named_path(name_), "cannot create");
 }
 
 Status TemporaryFile::add_name() {

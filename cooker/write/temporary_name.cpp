@@ -39,10 +39,18 @@ std::optional<std::uint64_t> random_number() {
 #endif
 }
 
+// Cut between characters of UTF-8, of which Windows takes no parts. They have 4 bytes at most.
+std::string_view start_of(std::string_view target) {
+  if (target.size() <= kLongestName) return target;
+  std::size_t size = kLongestName;
+  for (int i = 0; i < 3 && (static_cast<unsigned char>(target[size]) & 0xc0u) == 0x80u; ++i) --size;
+  return target.substr(0, size);
+}
+
 }  // namespace
 
 std::string temporary_prefix(std::string_view target) {
-  return fmt::format(".{}.", target.substr(0, kLongestName));
+  return fmt::format(".{}.", start_of(target));
 }
 
 bool is_temporary_name(std::string_view name, std::string_view prefix) {

@@ -21,9 +21,12 @@ std::wstring wide_path(const std::string& path) {
   std::wstring wide(static_cast<std::size_t>(size), L'\0');
   ::MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path.data(), bytes, wide.data(), size);
   if (wide.find(L'\0') != std::wstring::npos) return {};
-  const bool is_taken_as_it_is = wide.starts_with(L"\\\\?\\");
-  if (wide.size() < MAX_PATH || is_taken_as_it_is) return wide;
+  const bool is_taken_as_it_is = wide.starts_with(L"\\\\?\\") || wide.starts_with(L"\\\\.\\");
+  if (is_taken_as_it_is) return wide;
+  // The system counts with the current folder, and leaves room for a short name in a new folder.
+  constexpr DWORD kRoomInFolders = 12;
   const DWORD full_size = ::GetFullPathNameW(wide.c_str(), 0, nullptr, nullptr);
+  if (full_size <= MAX_PATH - kRoomInFolders) return wide;
   std::wstring full(full_size, L'\0');  // with a 0 at its end
   full.resize(::GetFullPathNameW(wide.c_str(), full_size, full.data(), nullptr));
   if (full.starts_with(L"\\\\")) return L"\\\\?\\UNC\\" + full.substr(2);

@@ -21,7 +21,7 @@
 namespace boxtree {
 
 /// A path in UTF-8 as the system takes it; empty if it is not UTF-8 or has a zero in it. Those that
-/// are longer than MAX_PATH are made absolute, and taken as they are.
+/// the system does not take for their length are made absolute, and begin with "\\\\?\\".
 [[nodiscard]] std::wstring wide_path(const std::string& path);
 
 /// The error for `path` by what GetLastError() returned: `code`, or kFileNotFound and kOutOfMemory

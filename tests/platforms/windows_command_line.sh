@@ -6,6 +6,7 @@
 set -uo pipefail
 linux=$(realpath "$1") windows=$(realpath "$2") source=$(realpath "$3")
 cd "$4" || exit
+export LC_ALL=C.UTF-8  # by which Wine reads names of files
 compared=0
 failed=0
 on_windows() { wine "$windows" "$@" 2>../windows.complaint; }
@@ -94,14 +95,76 @@ litter=$(find . -name '.*.cooking')
 [ -z "$litter" ] || differs "left behind: $litter"
 rm -f expected.cooked found.cooked queries.jsonl
 
-# Times differ; what was found does not.
+# bench. Times differ; what was found does not.
 counts() { python3 -c 'import json, sys
 for file in json.load(sys.stdin)["files"]:
     print({k: v for k, v in file.items() if not k.endswith(("_ns", "_us", "faults"))})'; }
-"$linux" bench torus.bxt --quick --runs 1 --json | counts >../linux.out
-on_windows bench torus.bxt --quick --runs 1 --json | counts >../windows.out
-compared=$((compared + 1))
-cmp -s ../linux.out ../windows.out || differs bench
+measured() {
+  "$linux" bench "$1" --quick --runs 1 --json | counts >../linux.out
+  on_windows bench "$1" --quick --runs 1 --json | counts >../windows.out
+  compared=$((compared + 1))
+  cmp -s ../linux.out ../windows.out || differs bench "$1"
+}
+measured torus.bxt
+
+# written FILE ARGUMENT...: both write it, with the same bytes and the same exit status.
+written() {
+  local file=$1 expected=0 found=0
+  shift
+  rm -f "$file"
+  "$linux" "$@" -o "$file" -q 2>../linux.complaint || expected=$?
+  mv "$file" ../expected.file
+  on_windows "$@" -o "$file" -q || found=$?
+  compared=$((compared + 1))
+  [ $expected = $found ] || differs "exit status $found, expected $expected: $*" "$(head -1 ../windows.complaint)"
+  cmp ../expected.file "$file" || differs "$* -o $file" "$(head -1 ../windows.complaint)"
+}
+# Files, folders, lists, batches, meshes, profiles and packs in that folder, whose names are not ASCII.
+named() {
+  local folder=$1 file
+  local tree="$folder/größe.bxt" other="$folder/日本.bxt" third="$folder/🌳 tree.bxt"
+  mkdir -p "$folder"
+  cp level.bxt "$tree"
+  cp torus.bxt "$other"
+  cp crate.bxt "$third"
+  for file in "$tree" "$other" "$third"; do
+    same info "$file" --json
+    same verify "$file" --json
+    same query "$file" ray --origin 0.3,0.2,9 --direction 0,0.01,-1 --json
+    same query "$file" pair "$third" --pose 0.5,0,0.4 --json
+  done
+  measured "$other"
+  printf '{"kind":"pair","file":"%s"}\n' "$third" >"$folder/fragen é.jsonl"
+  same query "$tree" --batch "$folder/fragen é.jsonl" --json
+
+  sed 's/mtllib .*/mtllib farben é 木.mtl/' "$source/samples/meshes/crate.obj" >"$folder/kiste é.obj"
+  cp "$source/samples/meshes/crate.mtl" "$folder/farben é 木.mtl"
+  written "$folder/kiste é.bxt" cook "$folder/kiste é.obj" --materials
+  printf '[scene]\nsource = "kiste é.obj"\n' >"$folder/profil é.toml"
+  written "$folder/profil é.bxt" cook --profile "$folder/profil é.toml"
+
+  printf '%s\n' "$tree" "$third" >"$folder/liste é"
+  written "$folder/alle é.bxt" pack "$other" "@$folder/liste é" --names path
+  written "$folder/alle é.bxt" pack "$tree" "$other" "$third"
+  mkdir ../expected.split
+  "$linux" split "$folder/alle é.bxt" -o ../expected.split -q
+  on_windows split "$folder/alle é.bxt" -o "$folder/taken é" -q
+  compared=$((compared + 1))
+  diff -r ../expected.split "$folder/taken é" || differs "split into $folder" "$(head -1 ../windows.complaint)"
+
+  # What is not to be written over.
+  same pack "$tree" "$other" -o "$tree"
+  cmp level.bxt "$tree" || differs "pack over its input"
+  echo notes >"$folder/notizen é"
+  same pack "$tree" "$other" -o "$folder/notizen é"
+  [ "$(cat "$folder/notizen é")" = notes ] || differs "pack over another file"
+  refused 2 "$folder/nichts é.bxt: no such file" info "$folder/nichts é.bxt"
+  rm -r "${folder%%/*}" ../expected.split
+}
+named "größe 木 🌳"
+long=folder
+for _ in $(seq 12); do long+="/a folder with a name of some length"; done  # beyond MAX_PATH, which is 260
+named "$long"
 
 # What it has not.
 "$linux" cook "$source/samples/meshes/crate.obj" --codec blob-zstd -o ../blob.bxt -q
