@@ -3,13 +3,15 @@
 # Builds the runtime and its C interface for each platform, makes fixed queries there (digests.c) and
 # compares the digests of the answers with those that are pinned (digests-COUNT.txt). Prints PASS, FAIL or
 # SKIP, the name and the digest of all; exit 1 when one fails. What is missing is installed.
-#   tests/platforms/run.sh [--count N] [NAME...]     default: all
+#   tests/platforms/run.sh [--count N] [--long] [NAME...]     default: all
 #   --count N    queries of each kind and file [15000: 10^5 in all]; those of a number that is not pinned are
 #                compared with what the first platform answered
+#   --long       windows-suites: the tests of queries, scenes, codecs, damaged files and robustness, too
 #   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake;
 #                scalar: without vectors; sse4, avx512: walks by other vectors; O0, clang, libcxx: other compilers and libraries;
 #                windows: x86-64 under Wine, the interface in C; windows-cli: the command line there, compared with
-#                this machine's; windows-suites: tests there; arm64, armhf, riscv64, i386: under qemu or as they are;
+#                this machine's; windows-suites: tests of files there; arm64, armhf, riscv64, i386: under qemu or as
+#                they are, without vectors;
 #                wasm: under Node; farm: no queries, but cooks by a cache on a server, by Bazel and by Slurm (tests/farm)
 # Environment: BOXTREE_BUILD, where boxtree is built, whose command line cooks [build]
 # shellcheck disable=SC2317 # platforms are called by name
@@ -20,10 +22,14 @@ build=${BOXTREE_BUILD:-$source/build}
 work=$build/platforms
 known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows windows-cli windows-suites arm64 armhf riscv64 i386 wasm farm"
 count=15000
-if [ "${1:-}" = --count ]; then
-  count=$2
-  shift 2
-fi
+long=
+while [ $# -gt 0 ]; do
+  case $1 in
+    --count) count=${2:?--count: expected a number}; shift 2 ;;
+    --long) long=1; shift ;;
+    *) break ;;
+  esac
+done
 for name in "$@"; do
   case " $known " in
     *" $name "*) ;;
@@ -219,18 +225,19 @@ platform_windows-cli() {
 }
 # A line for each program that fails; at last the number of their tests.
 platform_windows-suites() {
-  built_for_windows windows-suites boxtree_suites || return 0
-  local program name passed=0 failing=()
+  local suites="suites" list program name passed=0 failing=()
+  [ -z "$long" ] || suites="suites long_suites"
+  for list in $suites; do built_for_windows windows-suites "boxtree_$list" || return 0; done
   while read -r program; do
     name=$(basename "$program" .exe)
-    if WINEPATH="$work/windows/runtime" wine "$program" --gtest_brief=1 </dev/null 2>"$work/windows.$name.err" |
+    if WINEPATH="$work/windows/runtime" timeout 3600 wine "$program" --gtest_brief=1 </dev/null 2>"$work/windows.$name.err" |
       tr -d '\r' >"$work/windows.$name.txt"; then
       passed=$((passed + $(grep -oE '^\[  PASSED  \] [0-9]+' "$work/windows.$name.txt" | grep -oE '[0-9]+$')))
     else
       failing+=("$name")
       { grep -E '^\[  FAILED  \]|Failure' "$work/windows.$name.txt" || tail -3 "$work/windows.$name.err"; } | head -5
     fi
-  done <"$work/windows/suites.txt"
+  done < <(for list in $suites; do cat "$work/windows/$list.txt"; done)
   if [ ${#failing[@]} = 0 ]; then
     echo "PASS windows-suites $passed tests"
   else

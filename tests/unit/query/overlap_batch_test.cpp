@@ -159,7 +159,9 @@ TEST_P(OverlapBatches, OfShapesThatHaveNothingInCommonAreAsAlone) {
 TEST_P(OverlapBatches, ThatStopAreAsAlone) {
   for_each_mesh([&](const Tree& tree, const Eigen::AlignedBox3d& bounds) {
     const Boxes boxes = boxes_around(bounds, 120, 1);
-    const auto most = [](std::size_t i) { return std::array{1ul, 3ul, 10ul, kAllFaces}[i % 4]; };
+    const auto most = [](std::size_t i) {
+      return std::array<std::size_t, 4>{1, 3, 10, kAllFaces}[i % 4];
+    };
     expect_as_alone(tree, boxes, most);
     expect_as_alone(tree, spheres_of(boxes), most);
   });

@@ -33,7 +33,7 @@ class ProfileTest : public ::testing::Test {
     return without_folder(profile.error().detail);
   }
   std::string without_folder(const std::string& text) const {
-    const std::string folder = folder_.string() + "/";
+    const std::string folder = (folder_ / "").string();
     EXPECT_EQ(text.rfind(folder, 0), 0u) << "starts with the path: " << text;
     return text.substr(folder.size());
   }

@@ -92,6 +92,7 @@ TEST(ReadLeaf, GivesTheTrianglesOfLeafReader) {
   }
 }
 
+#ifdef BOXTREE_TEST_TARGETS
 // Otherwise the tests here compare LeafReader with itself.
 TEST(ReadLeaf, IsByVectorsWhereTheMachineHasEightLanes) {
   for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid}) {
@@ -107,6 +108,7 @@ TEST(ReadLeaf, IsByVectorsWhereTheMachineHasEightLanes) {
     }
   }
 }
+#endif
 
 // The file lies alone on the heap, where the address sanitizer and valgrind see every read outside.
 TEST(ReadLeaf, OfCorruptClustersHasTheSameErrors) {
