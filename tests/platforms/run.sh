@@ -11,7 +11,7 @@
 #                scalar: without vectors; sse4, avx512: walks by other vectors; O0, clang, libcxx: other compilers and libraries;
 #                windows: x86-64 under Wine, the interface in C; windows-cli: the command line there, compared with
 #                this machine's; windows-suites: tests of files there; arm64, armhf, riscv64, i386: under qemu or as
-#                they are, without vectors;
+#                they are, without vectors; arm64-neon: with NEON, by Debian's Highway for arm64;
 #                wasm: under Node; farm: no queries, but cooks by a cache on a server, by Bazel and by Slurm (tests/farm)
 # Environment: BOXTREE_BUILD, where boxtree is built, whose command line cooks [build]
 # shellcheck disable=SC2317 # platforms are called by name
@@ -20,7 +20,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 source=$(cd "$here/../.." && pwd)
 build=${BOXTREE_BUILD:-$source/build}
 work=$build/platforms
-known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows windows-cli windows-suites arm64 armhf riscv64 i386 wasm farm"
+known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows windows-cli windows-suites arm64 arm64-neon armhf riscv64 i386 wasm farm"
 count=15000
 long=
 while [ $# -gt 0 ]; do
@@ -245,6 +245,30 @@ platform_windows-suites() {
   fi
 }
 platform_arm64() { emulated arm64 aarch64 aarch64-linux-gnu "g++-aarch64-linux-gnu qemu-user-static" qemu-aarch64-static; }
+# Highway is a library, so it is that of Debian's arm64.
+platform_arm64-neon() {
+  local root=$work/arm64-packages libraries=usr/lib/aarch64-linux-gnu
+  install_missing g++-aarch64-linux-gnu qemu-user-static pkg-config
+  fetched arm64 "$root" libhwy1 libhwy-dev || { fail arm64-neon "no packages of arm64, see $root.log"; return 0; }
+  PKG_CONFIG_LIBDIR=$root/$libraries/pkgconfig PKG_CONFIG_SYSROOT_DIR=$root \
+    cross arm64-neon Linux aarch64 aarch64-linux-gnu-g++ -DBOXTREE_HIGHWAY=ON || return 0
+  static arm64-neon aarch64-linux-gnu-gcc -L"$root/$libraries" -lhwy -Wl,-rpath,"$root/$libraries" -lstdc++ -lm || return 0
+  conclude arm64-neon "$work/arm64-neon/digests" qemu-aarch64-static -L /usr/aarch64-linux-gnu
+}
+# fetched ARCHITECTURE FOLDER PACKAGE...: unpacks what Debian has for another architecture; nothing is installed.
+fetched() {
+  local architecture=$1 folder=$2 new=$2.new
+  shift 2
+  [ ! -d "$folder" ] || return 0
+  rm -rf "$new"
+  mkdir -p "$new/lists/partial" "$new/cache/archives/partial" "$new/unpacked"
+  local apt=(apt-get -q -o "APT::Architecture=$architecture" -o "APT::Architectures=$architecture" -o "Dir::State::Lists=$new/lists"
+    -o "Dir::Cache=$new/cache" -o Dir::State::status=/dev/null -o APT::Sandbox::User=root)
+  (
+    cd "$new" && "${apt[@]}" update && "${apt[@]}" download "$@" &&
+      for package in *.deb; do dpkg -x "$package" unpacked || exit; done && mv unpacked "$folder"
+  ) >"$folder.log" 2>&1 && rm -rf "$new"
+}
 platform_armhf() { emulated armhf armv7l arm-linux-gnueabihf "g++-arm-linux-gnueabihf qemu-user-static" qemu-arm-static; }
 platform_riscv64() { emulated riscv64 riscv64 riscv64-linux-gnu "g++-riscv64-linux-gnu qemu-user-static" qemu-riscv64-static; }
 platform_i386() { emulated i386 i686 i686-linux-gnu g++-i686-linux-gnu ""; }
