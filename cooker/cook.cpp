@@ -161,6 +161,7 @@ class Cook {
   [[nodiscard]] SearchOptions search_options(std::size_t mesh, bool has_grid) const {
     SearchOptions search = static_cast<const SearchOptions&>(options_);
     search.face_order = !input_.scene.meshes[mesh].user_data.empty();
+    search.is_part = !options_.import.face_ids.empty();
     if (!input_.has_top_level) {
       search.face_order |= options_.materials;
       return search;

@@ -59,6 +59,7 @@ std::string make_cook_record(const CookOptions& options, const CookInput& input,
   if (!options.import.user_data.empty()) {
     record["options"]["user_data"] = options.import.user_data;
   }
+  if (!options.import.face_ids.empty()) record["options"]["ids"] = options.import.face_ids;
   if (options.active_edges) record["options"]["active_edges"] = *options.active_edges;
   if (options.number_by_tree) record["options"]["faces"] = "reordered";
   if (!options.costs.empty()) record["options"]["costs"] = "own";

@@ -68,19 +68,24 @@ BuildTree unbuilt_tree(const MeshView& mesh, Origin origin) {
 struct Source {
   const SourceMesh& mesh;                             // as imported
   const std::optional<QuantisedPositions> quantised;  // or nothing
+  const bool is_part;                                 // SearchOptions::is_part, of f32
   EncodedTree known;                                  // shared by all its trees
   Duplicates duplicates;                              // of the mesh that is built
 
-  Source(const SourceMesh& imported, std::optional<QuantisedPositions> on_grid);
+  Source(const SourceMesh& imported, std::optional<QuantisedPositions> on_grid, bool is_part);
 
   [[nodiscard]] MeshView built() const {
     return quantised ? MeshView(mesh, quantised->positions) : MeshView(mesh);
   }
-  [[nodiscard]] Origin origin() const { return quantised ? Origin::kZero : Origin::kByPrecision; }
+  [[nodiscard]] Origin origin() const {
+    return quantised || is_part ? Origin::kZero : Origin::kByPrecision;
+  }
 };
 
-Source::Source(const SourceMesh& imported, std::optional<QuantisedPositions> on_grid)
-    : mesh(imported), quantised(std::move(on_grid)) {
+Source::Source(const SourceMesh& imported, std::optional<QuantisedPositions> on_grid, bool of_part)
+    : mesh(imported),
+      quantised(std::move(on_grid)),
+      is_part(of_part && imported.positions.precision == Precision::kF32) {
   const BuildTree unbuilt = unbuilt_tree(built(), origin());
   known.name = mesh.name;
   known.origin = quantised ? quantised->origin : unbuilt.origin;
@@ -309,7 +314,7 @@ class Search {
 
   // The work of wide8 where only other codecs were requested.
   [[nodiscard]] Result<WorkOfKinds> count_wide8() const {
-    const Source source(mesh_, {});
+    const Source source(mesh_, {}, options_.is_part);
     SearchOptions options = options_;
     options.geometry = GeometryId::kArrays;
     std::shared_ptr<const WideLayout> layout = unrounded_ ? unrounded_->layout : nullptr;
@@ -386,9 +391,9 @@ class Search {
       Result<QuantisedPositions> quantised = quantise_mesh();
       if (!quantised) return quantised.error();
       unrounded_.reset();  // a grid is tried last
-      on_grid.emplace(Built{Source(mesh_, std::move(*quantised)), nullptr});
+      on_grid.emplace(Built{Source(mesh_, std::move(*quantised), options_.is_part), nullptr});
     } else if (!unrounded_) {
-      unrounded_.emplace(Built{Source(mesh_, {}), nullptr});
+      unrounded_.emplace(Built{Source(mesh_, {}, options_.is_part), nullptr});
     }
     Built& built = store == GeometryId::kGrid ? *on_grid : *unrounded_;
     const Source& source = built.source;

@@ -35,6 +35,9 @@ struct SearchOptions {
   bool face_ids = true;
   /// Keep EncodedTree::face_order. [false]
   bool face_order = false;
+  /// The mesh is a part of a larger one: where f32 positions are far from the origin, tree space is
+  /// not moved to them, so that numbers of answers are those of the whole, bit for bit. [false]
+  bool is_part = false;
   /// Store active edges: those at which the surface bends away by more than so many degrees [none].
   std::optional<double> active_edges;
   /// Those of the mesh, if they are known already, as in a scene [none: found in the mesh alone].

@@ -140,7 +140,7 @@ class Declaration {
     // What a profile says of all this would be contradicted.
     for (Option* option : {codec_, goal_, exact_, tolerance_, arguments_.grid_bits_option,
                            arguments_.grid_step_option, budget_, slowdown_, no_face_ids_,
-                           materials_, user_data_, active_edges_, external_}) {
+                           materials_, user_data_, face_ids_, active_edges_, external_}) {
       arguments_.profile->excludes(option);
     }
   }
@@ -252,6 +252,12 @@ class Declaration {
                    "'primitives' of a glTF file, numbered in its order, or an integer in their "
                    "extras or those of their materials or meshes [else left out]")
             ->type_name("PROPERTY");
+    face_ids_ = add_option("--face-ids", arguments_.job.options.import.face_ids,
+                           "Take the source face numbers from an integer property of the faces of "
+                           "a PLY file that is a part of a larger mesh; they must not descend "
+                           "[else faces are counted]")
+                    ->type_name("PROPERTY")
+                    ->excludes(no_face_ids_);
     active_edges_ = add_option(
         "--active-edges", arguments_.job.options.active_edges,
         "Store which edges are active: boundaries, and those at which the surface bends away by "
@@ -302,7 +308,8 @@ class Declaration {
              "order of the tree; no face ids are needed then")
         ->excludes(arguments_.profile)
         ->excludes(scene_)
-        ->excludes(no_face_ids_);
+        ->excludes(no_face_ids_)
+        ->excludes(face_ids_);
     rare(add_file("--depfile", arguments_.job.depfile, Values::kFiles,
                   "Write the files read, in make syntax"));
     rare(add_flag("--try-all", arguments_.job.options.try_all,
@@ -315,7 +322,7 @@ class Declaration {
   Option *exact_ = nullptr, *tolerance_ = nullptr;
   Option *budget_ = nullptr, *slowdown_ = nullptr;
   Option *no_face_ids_ = nullptr, *materials_ = nullptr, *user_data_ = nullptr;
-  Option *active_edges_ = nullptr, *external_ = nullptr;
+  Option *face_ids_ = nullptr, *active_edges_ = nullptr, *external_ = nullptr;
 };
 
 }  // namespace

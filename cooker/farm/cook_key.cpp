@@ -43,7 +43,7 @@ Json form_of(const GridChoice& grid) {
 
 Json form_of(const SearchOptions& search) {
   const auto& [codec, wishes, builder, widths, geometry, may_use_grid, may_use_arrays, grid,
-               try_all, keep_all, face_ids, face_order, active_edges, known_edges, costs,
+               try_all, keep_all, face_ids, face_order, is_part, active_edges, known_edges, costs,
                shrink_share] = search;
   return {{"codec", codec ? Json(codec_name(*codec)) : Json(nullptr)},
           {"wishes", form_of(wishes)},
@@ -61,11 +61,12 @@ Json form_of(const SearchOptions& search) {
 
 Json form_of(const ImportOptions& import) {
   const auto& [skip_bad, precision, keep_doubles, try_first, keep_polygon_corners, materials,
-               user_data, bytes] = import;
+               user_data, face_ids, bytes] = import;
   return {{"skip_bad", skip_bad},
           {"precision", precision_name(precision)},
           {"keep_doubles", keep_doubles},
-          {"user_data", percent_encoded(user_data)}};
+          {"user_data", percent_encoded(user_data)},
+          {"ids", percent_encoded(face_ids)}};
 }
 
 // How the inputs become trees.

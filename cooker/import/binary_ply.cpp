@@ -79,6 +79,7 @@ class BinaryPlyReader {
   std::vector<std::uint32_t> corners_;      // of the current face or strip
   std::array<double, 3> position_{};        // of the current vertex
   std::optional<std::uint32_t> user_data_;  // of the current face, if it is wanted
+  std::int64_t face_id_ = 0;                // likewise
 };
 
 template <class T>
@@ -159,6 +160,9 @@ Status BinaryPlyReader<T>::read_faces() {
   if (Status status = mesh_.reserve_faces(count); !status.ok()) return status;
   for (std::uint64_t i = 0; i < count; ++i) {
     if (Status status = read_record(*layout_.face, i); !status.ok()) return status;
+    if (layout_.face_ids != nullptr) {
+      if (Status status = mesh_.number_next_face(face_id_); !status.ok()) return status;
+    }
     if (Status status = mesh_.add_face(corners_, user_data_); !status.ok()) return status;
   }
   return {};
@@ -187,6 +191,7 @@ Status BinaryPlyReader<T>::read_record(const PlyElement& element, std::uint64_t 
     for (std::size_t k = 0; k < 3; ++k) {
       if (layout_.xyz[k] == &property) position_[k] = load_ply_value(at, property.type, swapped_);
     }
+    if (layout_.face_ids == &property) face_id_ = load_ply_integer(at, property.type, swapped_);
     if (layout_.user_data == &property) {
       user_data_ = static_cast<std::uint32_t>(load_ply_integer(at, property.type, swapped_));
     }

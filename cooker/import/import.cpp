@@ -146,6 +146,12 @@ Result<ImportedFile> import_checked(const Request& request) {
                     "and extras",
                     request.source.title(), request.options.user_data, kGroups, kPrimitives)};
   }
+  if (!request.options.face_ids.empty() && !has_extension(path, "ply")) {
+    return Error{Errc::kMeshUnsupported,
+                 fmt::format("{}: ids of faces '{}': expected a PLY file, whose faces have "
+                             "properties",
+                             request.source.title(), request.options.face_ids)};
+  }
   ImportedFile out;
   const Status status =
       reader != nullptr ? read_mesh(*reader, request, out)

@@ -46,6 +46,10 @@ struct ImportOptions {
   /// material or of its mesh, the first that has it; 0 if none has. kMeshUnsupported if the file
   /// has none such.
   std::string user_data;
+  /// [none] Take the ids of faces from the property of faces with this name in a PLY file, as a
+  /// part of a larger mesh has them; they must not descend. kMeshUnsupported if the file has none
+  /// such.
+  std::string face_ids;
   /// [none] An input that is not a file. It can refer to no other.
   std::optional<SourceBytes> bytes;
 };

@@ -55,6 +55,27 @@ Status IndexedMesh<T>::reserve_faces(std::uint64_t count) {
 }
 
 template <class T>
+Status IndexedMesh<T>::number_next_face(std::int64_t id) {
+  const bool may_repeat = next_face_id_ > 0 && options_.user_data.empty();
+  const std::int64_t least = std::int64_t{next_face_id_} - (may_repeat ? 1 : 0);
+  if (id < least) {
+    return Error{
+        Errc::kMeshUnsupported,
+        fmt::format("{}: ids of faces '{}': expected none that descends{}, found {} where "
+                    "{} is the least",
+                    file_, options_.face_ids,
+                    options_.user_data.empty() ? "" : ", nor one twice with user data", id, least)};
+  }
+  if (id >= kMaxFaces) {
+    return Error{Errc::kMeshTooLarge,
+                 fmt::format("{}: ids of faces '{}': found {}, the largest is {}", file_,
+                             options_.face_ids, id, kMaxFaces - 1)};
+  }
+  next_face_id_ = static_cast<std::uint32_t>(id);
+  return {};
+}
+
+template <class T>
 Status IndexedMesh<T>::add_face(std::span<const std::uint32_t> corners,
                                 std::optional<std::uint32_t> user_data) {
   if (corners.size() < 3) {

@@ -46,6 +46,11 @@ class IndexedMesh {
   void end_vertices();
   /// Reserves memory in the same way.
   Status reserve_faces(std::uint64_t count);
+  /// Gives the next face another id than the number of faces before it. Ids must not descend, so
+  /// that ties, and runs of faces, go by the order of the file; parts of one face have the same,
+  /// which user data would tell apart. Errors: kMeshUnsupported where they do; kMeshTooLarge for
+  /// one that no file holds.
+  Status number_next_face(std::int64_t id);
   /// Adds a polygon by the numbers of its vertices, from 0. Polygons with fewer than three are
   /// counted and skipped.
   Status add_face(std::span<const std::uint32_t> corners,
@@ -55,7 +60,8 @@ class IndexedMesh {
   /// Adds the triangles of strips; a vertex number of -1 ends a strip. Every other triangle of a
   /// strip has the opposite winding. Strips of one or two vertices are not faces.
   Status add_strips(std::span<const std::uint32_t> vertices);
-  /// The id of the next face: the number of faces of three corners or more before it.
+  /// The id of the next face: the number of faces of three corners or more before it, if ids were
+  /// not given.
   [[nodiscard]] std::uint32_t next_face_id() const { return next_face_id_; }
 
   /// Reports `count` of `what` ("line") after the last element that the header counts; of a text,

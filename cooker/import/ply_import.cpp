@@ -29,6 +29,10 @@ Status import_ply(const SourceFile& source, const ImportOptions& options, Import
     if (Status status = find_user_data(options.user_data, layout); !status.ok())
       return in_file(source.title(), status.error());
   }
+  if (!options.face_ids.empty()) {
+    if (Status status = find_face_ids(options.face_ids, layout); !status.ok())
+      return in_file(source.title(), status.error());
+  }
 
   const auto counts = [&layout](PlyType type) {
     return std::count_if(layout.xyz.begin(), layout.xyz.end(),

@@ -56,11 +56,11 @@ Status find_corners(const PlyElement* element, const PlyProperty*& found) {
                           : failure(fmt::format("'{}' has no 'vertex_indices'", element->name));
 }
 
-}  // namespace
-
-Status find_user_data(const std::string& name, PlyLayout& layout) {
+// Sets `found` to the property `name` of faces; `what` it is, for messages.
+Status find_face_integer(std::string_view what, const std::string& name, const PlyLayout& layout,
+                         const PlyProperty*& found) {
   const auto refusal = [&](const std::string& why) {
-    return Error{Errc::kMeshUnsupported, fmt::format("user data of faces '{}': {}", name, why)};
+    return Error{Errc::kMeshUnsupported, fmt::format("{} of faces '{}': {}", what, name, why)};
   };
   if (layout.tristrips != nullptr && layout.tristrips->count > 0) {
     return refusal("the file has 'tristrips', whose triangles have no properties of their own");
@@ -71,18 +71,28 @@ Status find_user_data(const std::string& name, PlyLayout& layout) {
     if (!property.length && is_integer(property.type)) {
       names.push_back(property.name);
       if (!is_meant) continue;
-      if (layout.user_data != nullptr) return refusal("faces have it twice");
-      layout.user_data = &property;
+      if (found != nullptr) return refusal("faces have it twice");
+      found = &property;
     } else if (is_meant) {
       return refusal(property.length ? "expected one integer a face, found a list"
                                      : "expected an integer, found a floating-point number");
     }
   }
-  if (layout.user_data != nullptr) return {};
+  if (found != nullptr) return {};
   return refusal(fmt::format("faces have no such property; {}{}",
                              names.empty() ? "they have none that is an integer"
                                            : "integers of theirs are: " + listed(names),
                              suggestion(name, names)));
+}
+
+}  // namespace
+
+Status find_user_data(const std::string& name, PlyLayout& layout) {
+  return find_face_integer("user data", name, layout, layout.user_data);
+}
+
+Status find_face_ids(const std::string& name, PlyLayout& layout) {
+  return find_face_integer("ids", name, layout, layout.face_ids);
 }
 
 Status find_ply_parts(PlyLayout& layout) {

@@ -18,6 +18,7 @@ struct PlyLayout {
   const PlyProperty* corners = nullptr;    // the property of faces that holds their corners
   const PlyProperty* strip = nullptr;      // the same for strips
   const PlyProperty* user_data = nullptr;  // of faces, if it is wanted
+  const PlyProperty* face_ids = nullptr;   // likewise
   std::array<const PlyProperty*, 3> xyz{};
 
   PlyLayout() = default;
@@ -33,5 +34,7 @@ Status find_ply_parts(PlyLayout& layout);
 /// Fills in user_data: the property `name` of faces. kMeshUnsupported if there is none such, or it
 /// is not one integer a face. Precondition: the other members are filled in.
 Status find_user_data(const std::string& name, PlyLayout& layout);
+/// Fills in face_ids, likewise.
+Status find_face_ids(const std::string& name, PlyLayout& layout);
 
 }  // namespace boxtree::cooker

@@ -66,6 +66,7 @@ class Reader {
   std::array<double, 3> position_{};        // of the current vertex
   std::vector<std::uint32_t> corners_;      // of the current face or strip
   std::optional<std::uint32_t> user_data_;  // of the current face, if it is wanted
+  std::int64_t face_id_ = 0;                // likewise
 };
 
 template <class T>
@@ -189,6 +190,10 @@ Status Reader<T>::take_row(const PlyElement& element) {
       if (!user_data_) {
         return failure(fmt::format("user data '{}' is no integer of 32 bits", row_[at]));
       }
+    } else if (&property == layout_.face_ids) {
+      const std::optional<std::int64_t> id = read_integer(row_[at]);
+      if (!id) return failure(fmt::format("the id '{}' of a face is no integer", row_[at]));
+      face_id_ = *id;
     } else if (&element == layout_.vertex) {
       for (std::size_t k = 0; k < 3; ++k) {
         if (layout_.xyz[k] == &property) position_[k] = double{vertex_[at]};
@@ -199,6 +204,9 @@ Status Reader<T>::take_row(const PlyElement& element) {
   if (&element == layout_.vertex) {
     for (const double x : position_) mesh_.add_coordinate(x);
   } else if (&element == layout_.face) {
+    if (layout_.face_ids != nullptr) {
+      if (Status status = mesh_.number_next_face(face_id_); !status.ok()) return status;
+    }
     return mesh_.add_face(corners_, user_data_);
   } else if (&element == layout_.tristrips) {
     return mesh_.add_strips(corners_);

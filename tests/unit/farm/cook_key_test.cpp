@@ -72,6 +72,7 @@ const std::vector<Variation>& variations() {
       {"--materials", Effect::kBytes, {"--materials"}},
       {"--user-data", Effect::kBytes, {"--user-data", "groups"}},
       {"--user-data", Effect::kBytes, {"--user-data", "zone"}, {"zones.ply"}},
+      {"--face-ids", Effect::kBytes, {"--face-ids", "place"}, {"part.ply"}},
       {"--active-edges", Effect::kBytes, {"--active-edges", "20"}},
       {"--active-edges",
        Effect::kBytes,

@@ -48,6 +48,11 @@ inline void write_sources(const TempFolder& folder) {
                "property double z\nelement face 2\nproperty list uchar int vertex_indices\n"
                "property int zone\nend_header\n0 0 0\n1.23456789012345 0 0\n1 1 0\n0 1 0.5\n"
                "3 0 1 2 7\n3 0 2 3 -4\n");
+  folder.write("part.ply",
+               "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+               "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+               "property int place\nend_header\n0 0 0\n1.5 0 0\n1 1 0\n0 1 0.5\n"
+               "3 0 1 2 7\n3 0 2 3 2147483646\n");
   folder.write("scene.toml",
                "[scene]\nfor = \"speed\"\n[[mesh]]\nname = \"m\"\nfile = \"m.obj\"\n"
                "hidden_faces = \"hidden.txt\"\n[[instance]]\nmesh = \"m\"\n");
