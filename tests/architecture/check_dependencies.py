@@ -16,7 +16,7 @@ ORDER = {
     "format": ["."],
     "runtime": ["file", "primitive", "tree", "walk", "query", "scene", "c", "paper", "blob"],
     "cooker": ["text", "system", "import", "quantise", "build", "encode", "proof", "choose", "write",
-               "scene", ".", "reorder", "shell", "farm", "export", "report", "cli"],
+               "scene", ".", "reorder", "shell", "farm", "tile", "export", "report", "cli"],
 }
 PARTS = list(ORDER)
 # Other people's headers that a part may include, beside those of the C++ standard library.

@@ -131,6 +131,7 @@ RUNS = {
     ],
     "pack": ["pack crate.bxt scene.bxt field.bxt stripped.bxt --names path -o packed.bxt"],
     "split": ["split packed.bxt -o taken"],
+    "tile": ["tile crate.obj crate.obj --triangles-per-tile 4 -o tiles.jsonl"],
     "key": ["key crate.obj", "key bad.obj crate.obj -o two.bxt --exact", "key --manifest one.jsonl"],
     "cook --cache, --manifest": [
         "cook crate.obj -o cached.bxt --cache cooked",
