@@ -46,7 +46,8 @@ bool frame_fits(const SceneRecord& record) {
 }
 
 bool reserve_is_zero(const SceneRecord& record) {
-  return record.reserved0 == 0 && record.reserved1 == decltype(record.reserved1){} &&
+  return (record.flags & ~kSceneKnownFlags) == 0 &&
+         record.reserved1 == decltype(record.reserved1){} &&
          record.reserved2 == decltype(record.reserved2){};
 }
 
@@ -81,7 +82,7 @@ Status check_scene_record(const SceneRecord& record) {
   } else if (!frame_fits(record)) {
     what = "origin, scale or root box out of range";
   } else if (!reserve_is_zero(record)) {
-    what = "reserved bytes are not zero";
+    what = "unknown flags, or reserved bytes that are not zero";
   }
   if (what == nullptr) return {};
   return Error{Errc::kRecordInvalid, std::string("section scene: ") + what};

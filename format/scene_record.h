@@ -24,6 +24,12 @@ inline constexpr std::uint32_t kMaxLayers = 32;
 /// Instances of one scene: as many as the leaves that a wide codec can number.
 inline constexpr std::uint32_t kMaxInstances = kMaxFaces / kLeafFaces;
 
+/// SceneRecord::flags: the faces of all trees are numbered throughout, as those of one mesh that
+/// was cut into tiles. Of several at one distance the face with the smallest number counts,
+/// whatever instance it is of.
+inline constexpr std::uint8_t kSceneFacesNumbered = 1;
+inline constexpr std::uint8_t kSceneKnownFlags = 1;
+
 /// The scene of a file; a file has at most one. The top-level tree has its own tree space, (world -
 /// origin) * 2^-scale_exponent, as in TreeRecord.
 struct SceneRecord {
@@ -36,7 +42,7 @@ struct SceneRecord {
   std::uint8_t pose_bytes;   // of a number in section poses: 4 or 8
   std::uint8_t layer_count;  // 1 to kMaxLayers
   QueryKinds query_kinds;    // queries that the scene answers
-  std::uint8_t reserved0;
+  std::uint8_t flags;
   std::int32_t scale_exponent;
   std::uint32_t material_count;
   std::array<double, 3> origin;     // world

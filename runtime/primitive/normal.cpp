@@ -71,6 +71,14 @@ Eigen::Vector3d unit_across(const Eigen::Vector3d& along) noexcept {
 
 namespace {
 
+// Whether it scales alone, by one number on all axes: normals then keep their bits.
+bool keeps_directions(const Eigen::Matrix3d& linear) noexcept {
+  const double scale = linear(0, 0);
+  return scale > 0 && linear(1, 1) == scale && linear(2, 2) == scale && linear(0, 1) == 0 &&
+         linear(0, 2) == 0 && linear(1, 0) == 0 && linear(1, 2) == 0 && linear(2, 0) == 0 &&
+         linear(2, 1) == 0;
+}
+
 // The cofactors of a matrix, and the sign of its determinant, but for a factor.
 struct Cofactors {
   explicit Cofactors(const Eigen::Matrix3d& linear) noexcept {
@@ -96,6 +104,7 @@ bool is_mirror(const Eigen::Matrix3d& linear) noexcept {
 // reverses it.
 Eigen::Vector3d placed_normal(const Eigen::Matrix3d& linear,
                               const Eigen::Vector3d& normal) noexcept {
+  if (keeps_directions(linear)) return normal;
   const Cofactors cofactors(linear);
   const Eigen::Vector3d placed = normalised(product(cofactors.matrix, normal));
   return cofactors.determinant < 0 ? Eigen::Vector3d(-placed) : placed;

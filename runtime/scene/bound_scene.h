@@ -110,6 +110,15 @@ class BoundScene {
   /// Whether a leaf of the top level is an instance that was bound as moving.
   [[nodiscard]] bool is_detached(std::uint32_t number) const noexcept;
   [[nodiscard]] LayerRecord layer(std::uint32_t number) const noexcept;
+  /// Of hits at one distance: whether that on the first instance, of which the source has the
+  /// number `id`, comes before the other one. Faces have their ids.
+  [[nodiscard]] bool comes_first(std::uint32_t id, const FaceRef& face, std::uint32_t other_id,
+                                 const FaceRef& other) const noexcept {
+    if ((record().flags & kSceneFacesNumbered) != 0 && face.id != other.id) {
+      return face.id < other.id;
+    }
+    return id < other_id;
+  }
   /// An upper bound of PlacementBounds::condition of all instances.
   [[nodiscard]] double condition() const noexcept {
     return std::max(record().condition, conditions_.of_all());

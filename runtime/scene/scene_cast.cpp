@@ -61,10 +61,13 @@ struct SceneCastQuery : LineInScene {
     error = query.run();
     stopped = query.faces.stopped;
     if (!query.best.is_hit || error != Errc::kOk) return !is_done();
-    const CastCandidate& found = query.best;
-    if (best.is_hit && found.s == best.s && placed.id >= best_id) return true;
+    CastCandidate& found = query.best;
+    name(tree, found.face);
+    if (best.is_hit && found.s == best.s &&
+        !admission.scene.comes_first(placed.id, found.face, best_id, best.face)) {
+      return true;
+    }
     best = found;
-    name(tree, best.face);
     best_id = placed.id;
     best_instance = instance;
     best_tree = &tree;

@@ -61,7 +61,10 @@ struct SceneRayQuery : LineInScene {
     error = wishes == nullptr ? cast_ray(*placed.tree, in_object, any, admission.work, found)
                               : wishes->cast(*this, instance, placed, in_object, found);
     if (!found.is_hit || error != Errc::kOk) return !is_done();
-    if (best.is_hit && found.t == best.t && placed.id >= best_id) return true;
+    if (best.is_hit && found.t == best.t &&
+        !admission.scene.comes_first(placed.id, found.face, best_id, best.face)) {
+      return true;
+    }
     best = found;
     best_id = placed.id;
     best_instance = instance;
@@ -197,7 +200,8 @@ bool comes_first(const Scene& queried, const SceneRayHit& a, const SceneRayHit& 
   const BoundScene& scene = BoundScene::of(queried);
   if (a.t != b.t) return a.t < b.t;
   if (a.instance != b.instance) {
-    return scene.record_of(a.instance)->id < scene.record_of(b.instance)->id;
+    return scene.comes_first(scene.record_of(a.instance)->id, a.face,
+                             scene.record_of(b.instance)->id, b.face);
   }
   return comes_first(scene.trees()[scene.record_of(a.instance)->tree], a, b);
 }

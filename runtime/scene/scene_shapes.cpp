@@ -145,7 +145,10 @@ struct PointInScene {
     error = find_nearest(tree, query);
     if (error != Errc::kOk) return false;
     if (!query.found) return true;
-    if (found && exact.best == best && placed.id >= found_id) return true;
+    if (found && exact.best == best &&
+        !admission.scene.comes_first(placed.id, query.found->face, found_id, found->face)) {
+      return true;
+    }
     found = SceneClosestPoint{{*query.found}, instance};
     found_id = placed.id;
     best = exact.best;

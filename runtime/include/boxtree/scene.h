@@ -105,11 +105,13 @@ struct SceneFace {
 };
 
 /// One scene. Points into the bytes of its File, or of the files of its trees. Instances are
-/// numbered from 0 in the order of the file, or as given. Queries on a scene that is not being
-/// updated are safe from many threads at once; update(), make_movable(), rebuild() and what is set
-/// need the scene for themselves. The bytes of files are never written: poses of moving instances,
-/// and the tree over them, live in the Scene. Move-only; a scene that was moved from may only be
-/// assigned to or destroyed.
+/// numbered from 0 in the order of the file, or as given. Where queries say that of several faces
+/// that of the instance with the smallest id counts, the face with the smallest id does in a file
+/// that `boxtree merge` made of tiles, whose faces are numbered throughout. Queries on a scene that
+/// is not being updated are safe from many threads at once; update(), make_movable(), rebuild() and
+/// what is set need the scene for themselves. The bytes of files are never written: poses of moving
+/// instances, and the tree over them, live in the Scene. Move-only; a scene that was moved from may
+/// only be assigned to or destroyed.
 class BOXTREE_API Scene {
  public:
   /// Checks the records of the scene and of each tree, no instance but the moving ones; cost grows

@@ -263,7 +263,8 @@ TEST(SceneRecords, FramesAreFiniteAndOrdered) {
               }),
               kInvalid);
   }
-  EXPECT_EQ(scene_after([](SceneRecord& record) { record.reserved0 = 1; }), kInvalid);
+  EXPECT_EQ(scene_after([](SceneRecord& record) { record.flags = 2; }), kInvalid);
+  EXPECT_EQ(scene_after([](SceneRecord& record) { record.flags = kSceneFacesNumbered; }), kOk);
   EXPECT_EQ(scene_after([](SceneRecord& record) { record.reserved1[1] = 1; }), kInvalid);
 }
 
