@@ -18,6 +18,7 @@ void add_export_command(Command& program, int& status);
 void add_pack_command(Command& program, int& status);
 void add_split_command(Command& program, int& status);
 void add_tile_command(Command& program, int& status);
+void add_merge_command(Command& program, int& status);
 void add_completion_command(Command& program, int& status);
 void add_help_command(Command& program, int& status);
 

@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
     cooker::add_pack_command(app, status);
     cooker::add_split_command(app, status);
     cooker::add_tile_command(app, status);
+    cooker::add_merge_command(app, status);
     cooker::add_completion_command(app, status);
     cooker::add_help_command(app, status);
     if (const std::optional<int> ended = app.run(argc, argv); ended) status = *ended;

@@ -119,6 +119,7 @@ RUNS = {
         "cook field.obj -o stripped.bxt --strip",
         "cook field.obj -o no_ids.bxt --materials --no-face-ids",
         "cook zones.ply -o zones.bxt --user-data zone",
+        "cook crate.obj -o numbered.bxt --exact",
         "cook zones.ply -o idless.bxt --user-data zone --no-face-ids",
         "cook crate.obj -o blob.bxt --codec blob-zstd",
         "cook crate.obj crate.obj -o small.bxt --tolerance 0.001 --for memory --max-slowdown 9",
@@ -132,6 +133,7 @@ RUNS = {
     "pack": ["pack crate.bxt scene.bxt field.bxt stripped.bxt --names path -o packed.bxt"],
     "split": ["split packed.bxt -o taken"],
     "tile": ["tile crate.obj crate.obj --triangles-per-tile 4 -o tiles.jsonl"],
+    "merge": ["merge numbered.bxt -o world.bxt"],
     "key": ["key crate.obj", "key bad.obj crate.obj -o two.bxt --exact", "key --manifest one.jsonl"],
     "cook --cache, --manifest": [
         "cook crate.obj -o cached.bxt --cache cooked",
