@@ -545,7 +545,7 @@ misspelt() {
 }
 misspelt "boxtree: usage: 'quary' is no command; did you mean 'query'?
 See 'boxtree --help'." quary
-misspelt "boxtree: usage: 'xyzzy' is no command; expected cook, info, verify, query, bench, report, export, key, pack, split, completion or help
+misspelt "boxtree: usage: 'xyzzy' is no command; expected cook, info, verify, query, bench, report, export, key, pack, split, tile, merge, completion or help
 See 'boxtree --help'." xyzzy cube.bxt
 misspelt "boxtree: usage: a command is required
 See 'boxtree --help'."
