@@ -48,7 +48,7 @@ Json listed_face(const Tree& tree, const FaceRef& face) {
 Error only_of_scenes(const std::string& what, const std::string& instead) {
   return {Errc::kNoScene,
           fmt::format("{} are those of a scene, and this is one tree; {}, or query a file of "
-                      "cook --scene, without --tree",
+                      "cook --scene, without --tree (boxtree split takes one out of a pack)",
                       what, instead)};
 }
 
@@ -329,43 +329,17 @@ class FieldTexts {
 };
 
 // What an argument that the library does not take has to be, "t_max: expected 0 or more".
-std::string expected_of(std::string_view kind, std::string_view argument) {
-  constexpr const char* kInRange = "a finite point, at most 2^185 mesh extents away";
-  constexpr const char* kFinite = "finite and 0 or more";
-  constexpr const char* kUnsigned = "0 or more";
-  struct Expectation {
-    std::string_view argument;
-    const char* expected;
-  };
-  constexpr Expectation kExpectations[] = {
-      {"origin", kInRange},
-      {"center", kInRange},
-      {"start", kInRange},
-      {"end", kInRange},
-      {"position", kInRange},
-      {"point", kInRange},
-      {"points", "finite points, none farther than 2^185 mesh extents away"},
-      {"radius", kFinite},
-      {"half_extents", kFinite},
-      {"rotation", "four finite numbers, not all 0"},
-      {"t_max", kUnsigned},
-      {"max_distance", kUnsigned},
-      {"relative_error", kUnsigned},
-      {"absolute_error", kUnsigned},
-      {"box", "finite corners, min not above max on any axis"},
-      {"planes", "a matrix of finite numbers, and of rows whose sums are finite"},
-  };
+std::string expectation(std::string_view kind, std::string_view argument) {
   if (argument == "direction") {
     return fmt::format("direction: expected finite{}",
                        kind == RayRequest::kKind ? " and not zero" : "");
   }
-  if (argument == "distance") return fmt::format("within: expected {}", kUnsigned);
-  for (const Expectation& each : kExpectations) {
-    if (each.argument != argument) continue;
-    const std::string of = argument == kind ? std::string() : std::string(argument) + ": ";
-    return of + "expected " + each.expected;
-  }
-  return fmt::format("{} is not valid", argument);
+  if (argument == "t_max") return "t_max: expected 0 or more";  // t_min is 0 here
+  const std::string_view expected = expected_of(argument);
+  if (argument == "distance") return fmt::format("within: expected {}", expected);
+  if (expected.empty()) return fmt::format("{} is not valid", argument);
+  const std::string of = argument == kind ? std::string() : std::string(argument) + ": ";
+  return fmt::format("{}expected {}", of, expected);
 }
 
 }  // namespace
@@ -610,7 +584,7 @@ Error explained(const Error& error, const QueryRequest& request) {
         if (error.code == Errc::kInvalidQuery) {
           return {error.code,
                   fmt::format("{}: {}, found {}", Kind::kKind,
-                              expected_of(Kind::kKind, error.detail), FieldTexts::line_of(q))};
+                              expectation(Kind::kKind, error.detail), FieldTexts::line_of(q))};
         }
         if constexpr (requires { q.second; }) {
           if (error.code == Errc::kInvalidPose) {

@@ -20,6 +20,9 @@ bool begins_at_root(const std::string& path) {
 }  // namespace
 
 Error read_failure(const std::string& path, int reason, const std::string& named_in) {
+  if (path.empty()) {
+    return {Errc::kFileNotFound, "expected the name of a file, found an empty one"};
+  }
   if (reason == ENOENT || reason == ENOTDIR) {
     if (!named_in.empty()) {
       return error_at(error_with(Errc::kFileNotFound, path, ": no such file; names in ").detail,

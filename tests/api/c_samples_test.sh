@@ -29,7 +29,7 @@ below the upper plate: 0.25
 the ball falls 1.25 to face 2
 1 faces, 1 contact, 0.125 deep
 the nearest point is 1.5 away
-invalid_query: direction (NaN, infinite or empty query)
+invalid_query: direction: expected finite, and not zero for a ray (NaN, infinite or empty query)
 at height 1.5
 at height 1
 at height 0.5

@@ -104,16 +104,27 @@ struct ErrcInfo {
 /// never allocates.
 [[nodiscard]] BOXTREE_API const ErrcInfo& error_info(Errc code) noexcept;
 
+/// What is expected of the argument of a query, or of the field of one, that the detail of
+/// kInvalidQuery names: "finite and 0 or more" of a "radius". Empty for other texts. Thread-safe,
+/// never allocates.
+[[nodiscard]] BOXTREE_API std::string_view expected_of(std::string_view argument) noexcept;
+
 /// What went wrong, and where: `detail` names the place, what was expected and what was found.
 struct Error {
   Errc code = Errc::kInternal;  ///< What went wrong.
   std::string detail;           ///< Where, what was expected and what was found; may be empty.
 
   /// "box_escape: tree 0, node 17: ...", the form that the command line prints; the meaning of the
-  /// code where there is no detail.
+  /// code where there is no detail; "invalid_query: radius: expected finite and 0 or more".
   [[nodiscard]] std::string message() const {
     const ErrcInfo& info = error_info(code);
-    return std::string(info.name) + ": " + (detail.empty() ? std::string(info.meaning) : detail);
+    std::string text(info.name);
+    text.append(": ").append(detail.empty() ? info.meaning : std::string_view(detail));
+    if (code == Errc::kInvalidQuery) {
+      const std::string_view expected = expected_of(detail);
+      if (!expected.empty()) text.append(": expected ").append(expected);
+    }
+    return text;
   }
 };
 

@@ -64,6 +64,8 @@ TEST(FileOpen, MissingFileHasOneMessage) {
   EXPECT_EQ(File::open("missing.bxt").error().message(),
             "file_not_found: missing.bxt: no such file; check the name, which is relative to the "
             "current folder");
+  EXPECT_EQ(File::open("").error().message(),
+            "file_not_found: expected the name of a file, found an empty one");
 }
 
 TEST(FileOpen, NamesAreUtf8) {

@@ -84,5 +84,13 @@ TEST(ErrorTable, UnknownNumbersAreInternal) {
   EXPECT_EQ(error_info(static_cast<Errc>(1234)).code, Errc::kInternal);
 }
 
+TEST(ErrorMessage, OfAnInvalidQuerySaysWhatIsExpected) {
+  EXPECT_EQ(Error(Errc::kInvalidQuery, "radius").message(),
+            "invalid_query: radius: expected finite and 0 or more");
+  EXPECT_EQ(Error(Errc::kInvalidQuery, "results.size()").message(),
+            "invalid_query: results.size()");
+  EXPECT_EQ(Error(Errc::kInvalidPose, "radius").message(), "invalid_pose: radius");
+}
+
 }  // namespace
 }  // namespace boxtree

@@ -408,12 +408,12 @@ TEST(Distance, RefusesWhatHasNoMeaning) {
         .error()
         .message();
   };
-  EXPECT_EQ(refused({-1, 0}), "invalid_query: relative_error");
-  EXPECT_EQ(refused({NAN, 0}), "invalid_query: relative_error");
-  EXPECT_EQ(refused({0, -1}), "invalid_query: absolute_error");
-  EXPECT_EQ(refused({0, NAN}), "invalid_query: absolute_error");
-  EXPECT_EQ(refused({0, 0, -1}), "invalid_query: max_distance");
-  EXPECT_EQ(refused({0, 0, NAN}), "invalid_query: max_distance");
+  EXPECT_EQ(refused({-1, 0}), "invalid_query: relative_error: expected 0 or more");
+  EXPECT_EQ(refused({NAN, 0}), "invalid_query: relative_error: expected 0 or more");
+  EXPECT_EQ(refused({0, -1}), "invalid_query: absolute_error: expected 0 or more");
+  EXPECT_EQ(refused({0, NAN}), "invalid_query: absolute_error: expected 0 or more");
+  EXPECT_EQ(refused({0, 0, -1}), "invalid_query: max_distance: expected 0 or more");
+  EXPECT_EQ(refused({0, 0, NAN}), "invalid_query: max_distance: expected 0 or more");
   Pose flat = Pose::Identity();
   flat.linear().row(1).setZero();
   EXPECT_EQ(distance(cube.tree, flat, cube.tree, Pose::Identity()).code(), Errc::kInvalidPose);

@@ -230,13 +230,13 @@ TEST_P(OverlapWithin, RefusesWhatHasNoMeaning) {
   const Pose here = Pose::Identity();
   for (const double bad : {-1.0, static_cast<double>(NAN)}) {
     EXPECT_EQ(overlap_within(cooked.tree, here, cooked.tree, here, bad).error().message(),
-              "invalid_query: distance");
+              "invalid_query: distance: expected 0 or more");
     const Eigen::AlignedBox3d box(Eigen::Vector3d(0, 0, 0));
     EXPECT_EQ(overlap_box_within(cooked.tree, box, bad).error().message(),
-              "invalid_query: distance");
+              "invalid_query: distance: expected 0 or more");
   }
   EXPECT_EQ(overlap_box_within(cooked.tree, Eigen::AlignedBox3d(), 0).error().message(),
-            "invalid_query: box");
+            "invalid_query: box: expected finite corners, min not above max on any axis");
   Pose flat = here;
   flat.linear().row(1).setZero();
   EXPECT_EQ(overlap_within(cooked.tree, here, cooked.tree, flat, 0).code(), Errc::kInvalidPose);

@@ -218,12 +218,12 @@ TEST_P(ApproximatePoints, RefuseWhatHasNoMeaning) {
   const auto refused = [&](const PointOptions& options) {
     return closest_point(cooked.tree, {0, 0, 0}, options).error().message();
   };
-  EXPECT_EQ(refused({-1, 0}), "invalid_query: relative_error");
-  EXPECT_EQ(refused({NAN, 0}), "invalid_query: relative_error");
-  EXPECT_EQ(refused({0, -1}), "invalid_query: absolute_error");
-  EXPECT_EQ(refused({0, 0, NAN}), "invalid_query: max_distance");
+  EXPECT_EQ(refused({-1, 0}), "invalid_query: relative_error: expected 0 or more");
+  EXPECT_EQ(refused({NAN, 0}), "invalid_query: relative_error: expected 0 or more");
+  EXPECT_EQ(refused({0, -1}), "invalid_query: absolute_error: expected 0 or more");
+  EXPECT_EQ(refused({0, 0, NAN}), "invalid_query: max_distance: expected 0 or more");
   EXPECT_EQ(closest_point(cooked.tree, {NAN, 0, 0}, PointOptions()).error().message(),
-            "invalid_query: point");
+            "invalid_query: point: expected a finite point, at most 2^185 mesh extents away");
 }
 
 // A mesh that is one place, and points beside it: the square of the way there is no double.

@@ -340,7 +340,8 @@ TEST(SceneCastErrors, NameTheField) {
       test::cook_scene({test::sphere(6, 8)}, test::random_parts(4, 1, 0, 1, 1));
   const Scene scene = require(Scene::bind(cooked.file));
   const auto refused = [](const auto& result, const char* argument) {
-    EXPECT_EQ(result.error().message(), std::string("invalid_query: ") + argument);
+    EXPECT_EQ(result.error().code, Errc::kInvalidQuery);
+    EXPECT_EQ(result.error().detail, argument);
   };
   refused(cast_closest(scene, Sphere{{0, 0, 0}, -1}, {{1, 0, 0}}), "radius");
   refused(cast_any(scene, Sphere{{NAN, 0, 0}, 1}, {{1, 0, 0}}), "center");

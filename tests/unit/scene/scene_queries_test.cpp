@@ -480,7 +480,8 @@ TEST(SceneQueriesErrors, InvalidQueriesAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto none = [](const SceneFace&) { return true; };
   const auto refused = [](const auto& result, const char* argument) {
-    EXPECT_EQ(result.error().message(), std::string("invalid_query: ") + argument);
+    EXPECT_EQ(result.error().code, Errc::kInvalidQuery);
+    EXPECT_EQ(result.error().detail, argument);
   };
   refused(closest_hit(scene, {{nan, 0, 0}, {1, 0, 0}}), "origin");
   refused(any_hit(scene, {{0, 0, 0}, {0, 0, 0}}), "direction");
