@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Where the fields of a cluster and of its leaves lie, and what its numbers stand for: what every
-// decoder of leaves shares (decoders: format/cluster.cpp, runtime/walk/cluster-inl.h; encoder:
-// cooker/encode/cluster_geometry.cpp; format: docs/FORMAT.md 8.1). Always inlined, because walks
-// compile it once per instruction set.
+// decoder of leaves shares (format/cluster.cpp, runtime/tree/plain_cluster.cpp and
+// runtime/walk/cluster-inl.h; encoder: cooker/encode/cluster_geometry.cpp; docs/FORMAT.md 8.1).
+// Always inlined, because walks compile it once per instruction set.
 #pragma once
 
 #include <algorithm>

@@ -165,7 +165,7 @@ FileHeader make_header(std::span<const SectionRow> table, std::uint32_t features
 }
 
 Result<Container> check_container(Bytes file, ChecksumFunction checksum,
-                                  std::uint32_t known_features) {
+                                  std::uint32_t known_features, const Memory* memory) {
   if (Status status = check_magic(file); !status) return status.error();
   if (file.size() < sizeof(FileHeader)) {
     return error_with(Errc::kTruncated, {}, "the file has # bytes, a header alone has #",
@@ -183,7 +183,7 @@ Result<Container> check_container(Bytes file, ChecksumFunction checksum,
     return Error{Errc::kHeaderCorrupt, "checksum of header and section table differs"};
   }
   // kMaxSections sizes of 40 bits do not overflow.
-  container.sections = std::vector<SectionEntry>(header.section_count);
+  container.sections = Array<SectionEntry>(header.section_count, memory);
   for (std::size_t i = 0; i < header.section_count; ++i) {
     const SectionEntry entry = SectionEntry::of(load<SectionRow>(table.data(), i), end);
     if (entry.is_required && section_name(entry.kind) == "unknown") {

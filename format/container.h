@@ -10,12 +10,12 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include <boxtree/error.h>
 
 #include "format/bytes.h"
 #include "format/limits.h"
+#include "format/memory.h"
 
 namespace boxtree {
 
@@ -121,7 +121,7 @@ struct SectionEntry {
 /// A file whose header and section table passed every check of check_container().
 struct Container {
   FileHeader header;
-  std::vector<SectionEntry> sections;  // ascending by key()
+  Array<SectionEntry> sections;  // ascending by key()
 
   /// The section of that kind and owner, or nullptr.
   [[nodiscard]] const SectionEntry* find(SectionKind kind, std::uint32_t owner) const noexcept;
@@ -138,9 +138,10 @@ using ChecksumFunction = std::uint64_t (*)(Bytes head, Bytes tail);
 /// Reads and checks the header and section table: magic, version, features, checksum, that sections
 /// are known or optional and in their order, and that they are as long as the file. Reads no
 /// section: O(sections). Safe on any bytes; returns the first violation. `known_features`: bits of
-/// incompatible_features that the caller can read; none for a file that is mapped.
+/// incompatible_features that the caller can read; none for a file that is mapped. `memory`: of the
+/// table.
 Result<Container> check_container(Bytes file, ChecksumFunction checksum,
-                                  std::uint32_t known_features = 0);
+                                  std::uint32_t known_features = 0, const Memory* memory = nullptr);
 
 /// Checks that the bytes between sections, and after the last one, are zero; the error names the
 /// first that is not.

@@ -17,8 +17,10 @@
 
 namespace boxtree::c {
 
-/// Writes what went wrong, if the caller wants to know, and returns its code.
-bxt_status fail(bxt_error* error, Errc code, std::string_view detail = {}) noexcept;
+/// Writes what went wrong, if the caller wants to know, and returns its code. `more` follows the
+/// detail.
+bxt_status fail(bxt_error* error, Errc code, std::string_view detail = {},
+                std::string_view more = {}) noexcept;
 /// The same of an error of the C++ interface.
 inline bxt_status fail(bxt_error* error, const Error& what) noexcept {
   return fail(error, what.code, what.detail);
@@ -26,6 +28,11 @@ inline bxt_status fail(bxt_error* error, const Error& what) noexcept {
 /// kInvalidQuery for an argument, or a member of one.
 inline bxt_status refuse(bxt_error* error, std::string_view argument) noexcept {
   return fail(error, Errc::kInvalidQuery, argument);
+}
+
+/// The same for a pointer that is null.
+inline bxt_status refuse_null(bxt_error* error, std::string_view argument) noexcept {
+  return fail(error, Errc::kInvalidQuery, argument, " is NULL");
 }
 
 /// How a function ends: BXT_OK, or the error of a Status, Result or QueryResult.

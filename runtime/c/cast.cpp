@@ -54,7 +54,7 @@ template <class Handle, class Query>
 bxt_status with_cast(const Handle* subject, const bxt_shape* shape, const bxt_motion* given,
                      const bxt_face_options* options, bxt_error* error, Query query) {
   if (const char* name = first_null("tree or scene", subject, "shape", shape, "motion", given)) {
-    return refuse(error, name);
+    return refuse_null(error, name);
   }
   bxt_motion motion = {};
   if (!read_struct(given, motion)) return refuse(error, "motion: struct_size");
@@ -72,7 +72,7 @@ template <class Handle, class One>
 bxt_status one_touch(const Handle* subject, const bxt_shape* shape, const bxt_motion* motion,
                      const bxt_face_options* options, bxt_cast_hit* hit, bxt_error* error,
                      One one) {
-  if (hit == nullptr) return refuse(error, "hit");
+  if (hit == nullptr) return refuse_null(error, "hit");
   if (!has_size(hit)) return refuse(error, "hit: struct_size");
   return with_cast(subject, shape, motion, options, error, [&](const auto&... read) {
     const auto result = one(subject->inside, read...);
@@ -85,7 +85,7 @@ template <class Handle>
 bxt_status every_touch(const Handle* subject, const bxt_shape* shape, const bxt_motion* motion,
                        bxt_cast_visitor visitor, void* context, const bxt_face_options* options,
                        bxt_error* error) {
-  if (visitor == nullptr) return refuse(error, "visitor");
+  if (visitor == nullptr) return refuse_null(error, "visitor");
   return with_cast(
       subject, shape, motion, options, error,
       [&](const auto& read_shape, const Motion& read_motion, const auto& read_options) {
@@ -103,7 +103,7 @@ template <class Handle>
 bxt_status every_contact(const Handle* subject, const bxt_shape* shape, bxt_contact_visitor visitor,
                          void* context, const bxt_limits* limits, bxt_error* error) {
   if (const char* name = first_null("tree or scene", subject, "shape", shape, "visitor", visitor)) {
-    return refuse(error, name);
+    return refuse_null(error, name);
   }
   return guarded(error, [&] {
     return with_shape(shape, error, [&](const auto& read_shape) {
@@ -168,8 +168,8 @@ bxt_vec3 bxt_contact_resolved_normal(const bxt_contact* contact, const bxt_vec3*
 
 bxt_status bxt_merge_contacts(bxt_contact* contacts, size_t count, double distance, double cosine,
                               size_t* kept, bxt_error* error) {
-  if (kept == nullptr) return refuse(error, "kept");
-  if (count > 0 && contacts == nullptr) return refuse(error, "contacts");
+  if (kept == nullptr) return refuse_null(error, "kept");
+  if (count > 0 && contacts == nullptr) return refuse_null(error, "contacts");
   if (count > 0 && !has_size(contacts)) return refuse(error, "contacts: struct_size");
   if (count == 0) {
     *kept = 0;

@@ -22,8 +22,9 @@ bxt_status open_file(const bxt_file_options* given, bxt_file** file, bxt_error* 
   if (!read_struct(given, read)) return refuse(error, "options: struct_size");
   if (!Allocation::read(read.allocator, allocation)) return refuse(error, "options: allocator");
   return guarded(error, [&] {
-    Result<File> opened =
-        open(OpenOptions{.copy = read.copy, .verify_checksums = read.verify_checksums});
+    Result<File> opened = open(OpenOptions{.copy = read.copy,
+                                           .verify_checksums = read.verify_checksums,
+                                           .memory = allocation.memory()});
     if (!opened) return fail(error, opened.error());
     *file = allocation.make<bxt_file>(std::move(*opened));
     return bxt_status{BXT_OK};
@@ -34,14 +35,14 @@ bxt_status open_file(const bxt_file_options* given, bxt_file** file, bxt_error* 
 
 bxt_status bxt_file_open(const char* path, const bxt_file_options* options, bxt_file** file,
                          bxt_error* error) {
-  if (const char* name = first_null("path", path, "file", file)) return refuse(error, name);
+  if (const char* name = first_null("path", path, "file", file)) return refuse_null(error, name);
   return open_file(options, file, error,
                    [&](const OpenOptions& read) { return File::open(path, read); });
 }
 
 bxt_status bxt_file_open_memory(const void* bytes, size_t size, const bxt_file_options* options,
                                 bxt_file** file, bxt_error* error) {
-  if (const char* name = first_null("bytes", bytes, "file", file)) return refuse(error, name);
+  if (const char* name = first_null("bytes", bytes, "file", file)) return refuse_null(error, name);
   return open_file(options, file, error, [&](const OpenOptions& read) -> Result<File> {
     if (read.copy) return Error{Errc::kInvalidQuery, "options: copy, of what is in memory"};
     return File::open(Bytes(static_cast<const std::byte*>(bytes), size), read);
@@ -67,7 +68,7 @@ size_t bxt_file_tree_name(const bxt_file* file, uint32_t tree, char* buffer, siz
 bxt_status bxt_file_find_tree(const bxt_file* file, const char* name, uint32_t* tree,
                               bxt_error* error) {
   if (const char* null = first_null("file", file, "name", name, "tree", tree))
-    return refuse(error, null);
+    return refuse_null(error, null);
   return guarded(error, [&] {
     const Result<std::uint32_t> found = file->inside.find_tree(name);
     if (found) *tree = *found;
@@ -76,7 +77,7 @@ bxt_status bxt_file_find_tree(const bxt_file* file, const char* name, uint32_t* 
 }
 
 bxt_status bxt_file_verify_checksums(const bxt_file* file, bxt_error* error) {
-  if (file == nullptr) return refuse(error, "file");
+  if (file == nullptr) return refuse_null(error, "file");
   return guarded(error, [&] { return finish(verify_checksums(file->inside), error); });
 }
 

@@ -9,54 +9,48 @@
 
 #include <boxtree/boxtree.h>
 
+#include "format/memory.h"
 #include "runtime/c/call.h"
 
 namespace boxtree::c {
 
-/// Where a handle allocates.
+/// Where a handle and what it owns is allocated.
 class Allocation {
  public:
-  /// That of C++.
+  /// Operator new.
   Allocation() = default;
 
-  /// Reads what the caller gives; nullptr stands for that of C++. False if it has no functions.
+  /// Reads what the caller gives; nullptr stands for operator new. False if it has no functions.
   [[nodiscard]] static bool read(const bxt_allocator* given, Allocation& allocation) noexcept {
     if (given == nullptr) return true;
-    return read_struct(given, allocation.hooks_) && allocation.hooks_.allocate != nullptr &&
-           allocation.hooks_.release != nullptr;
+    bxt_allocator hooks = {sizeof(bxt_allocator), nullptr, nullptr, nullptr};
+    if (!read_struct(given, hooks) || hooks.allocate == nullptr || hooks.release == nullptr) {
+      return false;
+    }
+    allocation.memory_ = {hooks.context, hooks.allocate, hooks.release};
+    return true;
   }
+
+  [[nodiscard]] const Memory& memory() const noexcept { return memory_; }
 
   /// A new Handle, which knows where it came from. Throws std::bad_alloc.
   template <class Handle, class... Args>
   [[nodiscard]] Handle* make(Args&&... args) const {
-    void* const memory = allocate(sizeof(Handle), alignof(Handle));
-    if (memory == nullptr) throw std::bad_alloc();
-    return ::new (memory) Handle{std::forward<Args>(args)..., *this};
+    void* const place = allocate(&memory_, sizeof(Handle), alignof(Handle));
+    return ::new (place) Handle{std::forward<Args>(args)..., *this};
   }
 
   /// Ends what make() made; nullptr is nothing.
   template <class Handle>
   static void release(Handle* handle) noexcept {
     if (handle == nullptr) return;
-    const Allocation allocation = handle->allocation;
+    const Memory memory = handle->allocation.memory_;
     handle->~Handle();
-    allocation.release(handle, sizeof(Handle), alignof(Handle));
+    boxtree::release(&memory, handle, sizeof(Handle), alignof(Handle));
   }
 
  private:
-  [[nodiscard]] void* allocate(std::size_t size, std::size_t alignment) const {
-    if (hooks_.allocate != nullptr) return hooks_.allocate(hooks_.context, size, alignment);
-    return ::operator new(size, std::align_val_t(alignment));
-  }
-  void release(void* memory, std::size_t size, std::size_t alignment) const noexcept {
-    if (hooks_.release != nullptr) {
-      hooks_.release(hooks_.context, memory, size, alignment);
-    } else {
-      ::operator delete(memory, std::align_val_t(alignment));
-    }
-  }
-
-  bxt_allocator hooks_ = {sizeof(bxt_allocator), nullptr, nullptr, nullptr};
+  Memory memory_;
 };
 
 }  // namespace boxtree::c

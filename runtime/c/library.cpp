@@ -47,22 +47,30 @@ std::size_t copy_text(std::string_view text, char* buffer, std::size_t capacity)
   return text.size();
 }
 
-bxt_status fail(bxt_error* error, Errc code, std::string_view detail) noexcept {
+bxt_status fail(bxt_error* error, Errc code, std::string_view detail,
+                std::string_view more) noexcept {
   const auto status = static_cast<bxt_status>(code);
   if (error == nullptr || stated_size(error) < sizeof(bxt_error) ||
       stated_size(error) > sizeof(bxt_error) + kMostGrowth) {
     return status;
   }
   const ErrcInfo& info = error_info(code);
-  const std::string_view said = detail.empty() ? info.meaning : detail;
+  std::string_view between;
+  if (code == Errc::kInvalidQuery && more.empty()) {
+    more = expected_of(detail);
+    if (!more.empty()) between = ": expected ";
+  }
+  const std::string_view texts[] = {info.name, ": ", detail.empty() ? info.meaning : detail,
+                                    between, more};
   error->status = status;
-  error->message_length = info.name.size() + 2 + said.size();
+  error->message_length = 0;
+  error->message[0] = 0;
   // More than one text in a row without an allocation: what is missing is memory, say.
   const std::size_t capacity = stated_size(error) - offsetof(bxt_error, message);
-  std::size_t length = copy_text(info.name, error->message, capacity);
-  for (const std::string_view text : {std::string_view(": "), said}) {
-    length = std::min(length, capacity - 1);
-    length += copy_text(text, error->message + length, capacity - length);
+  for (const std::string_view text : texts) {
+    const std::size_t at = std::min(error->message_length, capacity - 1);
+    copy_text(text, error->message + at, capacity - at);
+    error->message_length += text.size();
   }
   return status;
 }

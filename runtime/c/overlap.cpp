@@ -26,7 +26,7 @@ Eigen::AlignedBox3d box_of(const bxt_vec3& min, const bxt_vec3& max) {
 template <class Handle, class Query>
 bxt_status visit_faces(bxt_face_visitor visitor, void* context, const bxt_limits* limits,
                        bxt_error* error, Query query) {
-  if (visitor == nullptr) return refuse(error, "visitor");
+  if (visitor == nullptr) return refuse_null(error, "visitor");
   return guarded(error, [&] {
     return with_limits<Handle>(limits, error, [&](auto... read) {
       const auto visit = [&](const auto& face) {
@@ -43,7 +43,7 @@ bxt_status visit_in_box(const Handle* subject, const bxt_vec3* min, const bxt_ve
                         bxt_face_visitor visitor, void* context, const bxt_limits* limits,
                         bxt_error* error) {
   if (const char* name = first_null("tree or scene", subject, "min", min, "max", max))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return visit_faces<Handle>(visitor, context, limits, error, [&](auto visit, auto... read) {
     return overlap_box(subject->inside, box_of(*min, *max), visit, read...);
   });
@@ -54,7 +54,7 @@ template <class Handle, class ShapeAt, class OverlapAll>
 bxt_status visit_batch(const Handle* subject, std::size_t count, const ShapeAt& shape_at,
                        bxt_batch_face_visitor visitor, void* context, const bxt_limits* limits,
                        bxt_status* statuses, bxt_error* error, const OverlapAll& overlap_all) {
-  if (visitor == nullptr) return refuse(error, "visitor");
+  if (visitor == nullptr) return refuse_null(error, "visitor");
   return guarded(error, [&] {
     return with_limits<Handle>(limits, error, [&](auto... read) {
       BatchStatuses written(statuses, error);
@@ -77,9 +77,9 @@ template <class Handle>
 bxt_status visit_in_boxes(const Handle* subject, const bxt_vec3* mins, const bxt_vec3* maxs,
                           std::size_t count, bxt_batch_face_visitor visitor, void* context,
                           const bxt_limits* limits, bxt_status* statuses, bxt_error* error) {
-  if (subject == nullptr) return refuse(error, "tree or scene");
+  if (subject == nullptr) return refuse_null(error, "tree or scene");
   if (count == 0) return BXT_OK;
-  if (const char* name = first_null("mins", mins, "maxs", maxs)) return refuse(error, name);
+  if (const char* name = first_null("mins", mins, "maxs", maxs)) return refuse_null(error, name);
   return visit_batch(
       subject, count, [&](std::size_t i) { return box_of(mins[i], maxs[i]); }, visitor, context,
       limits, statuses, error,
@@ -90,9 +90,10 @@ template <class Handle>
 bxt_status visit_in_spheres(const Handle* subject, const bxt_vec3* centers, const double* radii,
                             std::size_t count, bxt_batch_face_visitor visitor, void* context,
                             const bxt_limits* limits, bxt_status* statuses, bxt_error* error) {
-  if (subject == nullptr) return refuse(error, "tree or scene");
+  if (subject == nullptr) return refuse_null(error, "tree or scene");
   if (count == 0) return BXT_OK;
-  if (const char* name = first_null("centers", centers, "radii", radii)) return refuse(error, name);
+  if (const char* name = first_null("centers", centers, "radii", radii))
+    return refuse_null(error, name);
   return visit_batch(
       subject, count,
       [&](std::size_t i) {
@@ -124,7 +125,7 @@ template <class Handle>
 bxt_status visit_in_shape(const Handle* subject, const bxt_shape* shape, bxt_face_visitor visitor,
                           void* context, const bxt_limits* limits, bxt_error* error) {
   if (const char* name = first_null("tree or scene", subject, "shape", shape))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return with_shape(shape, error, [&](const auto& read_shape) {
     return visit_faces<Handle>(visitor, context, limits, error, [&](auto visit, auto... read) {
       return overlap(subject->inside, read_shape, visit, read...);
@@ -153,7 +154,7 @@ bxt_status visit_in_frustum(const Handle* subject, const bxt_plane planes[6],
                             bxt_face_visitor visitor, void* context, const bxt_limits* limits,
                             bxt_error* error) {
   if (const char* name = first_null("tree or scene", subject, "planes", planes))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return visit_faces<Handle>(visitor, context, limits, error, [&](auto visit, auto... read) {
     return overlap_frustum(subject->inside, frustum_of(planes), visit, read...);
   });
@@ -202,7 +203,7 @@ bxt_status bxt_tree_overlap_box_within(const bxt_tree* tree, const bxt_vec3* min
                                        const bxt_vec3* max, double distance, uint64_t node_budget,
                                        bxt_overlap_answer* answer, bxt_error* error) {
   if (const char* name = first_null("tree", tree, "min", min, "max", max, "answer", answer)) {
-    return refuse(error, name);
+    return refuse_null(error, name);
   }
   if (!has_size(answer)) return refuse(error, "answer: struct_size");
   return guarded(error, [&] {
@@ -273,7 +274,7 @@ bxt_status bxt_scene_instances_in_frustum(const bxt_scene* scene, const bxt_plan
                                           bxt_instance_visitor visitor, void* context,
                                           const bxt_limits* limits, bxt_error* error) {
   if (const char* name = first_null("scene", scene, "planes", planes, "visitor", visitor))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return guarded(error, [&] {
     return with_limits<bxt_scene>(limits, error, [&](auto... read) {
       const auto visit = [&](std::uint32_t instance) { return visitor(context, instance); };

@@ -83,7 +83,8 @@ void write_answer(bxt_overlap_answer* answer, Overlap overlap, const FacePair& f
 template <class Query>
 bxt_status with_trees(const bxt_tree* first, const bxt_tree* second, const bxt_limits* limits,
                       bxt_error* error, Query query) {
-  if (const char* name = first_null("first", first, "second", second)) return refuse(error, name);
+  if (const char* name = first_null("first", first, "second", second))
+    return refuse_null(error, name);
   return guarded(error, [&] { return with_limits<bxt_tree>(limits, error, query); });
 }
 
@@ -93,7 +94,7 @@ bxt_status bxt_tree_overlap_pairs(const bxt_tree* first, const bxt_pose* first_p
                                   const bxt_tree* second, const bxt_pose* second_pose,
                                   bxt_pair_visitor visitor, void* context, const bxt_limits* limits,
                                   bxt_error* error) {
-  if (visitor == nullptr) return refuse(error, "visitor");
+  if (visitor == nullptr) return refuse_null(error, "visitor");
   return with_trees(first, second, limits, error, [&](const QueryLimits& read) {
     const PairsTo visit{visitor, context};
     return finish(overlap_pairs(first->inside, to_cpp(first_pose), second->inside,
@@ -106,7 +107,7 @@ bxt_status bxt_tree_first_contact(const bxt_tree* first, const bxt_pose* first_p
                                   const bxt_tree* second, const bxt_pose* second_pose,
                                   const bxt_limits* limits, bxt_overlap_answer* answer,
                                   bxt_error* error) {
-  if (answer == nullptr) return refuse(error, "answer");
+  if (answer == nullptr) return refuse_null(error, "answer");
   if (!has_size(answer)) return refuse(error, "answer: struct_size");
   return with_trees(first, second, limits, error, [&](const QueryLimits& read) {
     const QueryResult<FacePair> found =
@@ -122,7 +123,7 @@ bxt_status bxt_tree_overlap_within(const bxt_tree* first, const bxt_pose* first_
                                    double distance, uint64_t node_budget,
                                    bxt_overlap_answer* answer, bxt_error* error) {
   if (const char* name = first_null("first", first, "second", second, "answer", answer))
-    return refuse(error, name);
+    return refuse_null(error, name);
   if (!has_size(answer)) return refuse(error, "answer: struct_size");
   return guarded(error, [&] {
     const Result<PairOverlap> found =
@@ -139,7 +140,7 @@ bxt_status bxt_tree_pair_contacts(const bxt_tree* first, const bxt_pose* first_p
                                   const bxt_tree* second, const bxt_pose* second_pose,
                                   bxt_pair_contact_visitor visitor, void* context,
                                   const bxt_limits* limits, bxt_error* error) {
-  if (visitor == nullptr) return refuse(error, "visitor");
+  if (visitor == nullptr) return refuse_null(error, "visitor");
   return with_trees(first, second, limits, error, [&](const QueryLimits& read) {
     const ContactsTo visit{visitor, context};
     return finish(pair_contacts(first->inside, to_cpp(first_pose), second->inside,
@@ -153,7 +154,7 @@ bxt_status bxt_tree_distance(const bxt_tree* first, const bxt_pose* first_pose,
                              const bxt_approximation* options, bxt_distance* distance,
                              bxt_error* error) {
   if (const char* name = first_null("first", first, "second", second, "distance", distance)) {
-    return refuse(error, name);
+    return refuse_null(error, name);
   }
   if (!has_size(distance)) return refuse(error, "distance: struct_size");
   return guarded(error, [&] {
@@ -184,7 +185,8 @@ namespace {
 template <class Visit, class Function, class Query>
 bxt_status visit_pairs(const bxt_scene* scene, Function visitor, void* context,
                        const bxt_limits* limits, bxt_error* error, Query query) {
-  if (const char* name = first_null("scene", scene, "visitor", visitor)) return refuse(error, name);
+  if (const char* name = first_null("scene", scene, "visitor", visitor))
+    return refuse_null(error, name);
   return guarded(error, [&] {
     return with_nodes(limits, error, [&](const QueryLimits& read) {
       const Visit visit{visitor, context};
@@ -199,7 +201,7 @@ bxt_status visit_pairs_with(const bxt_scene* scene, const bxt_tree* tree, Functi
                             void* context, const bxt_limits* limits, bxt_error* error,
                             Query query) {
   if (const char* name = first_null("scene", scene, "tree", tree, "visitor", visitor))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return guarded(error, [&] {
     return with_limits<bxt_scene>(limits, error, [&](auto... read) {
       const Visit visit{visitor, context};

@@ -31,7 +31,7 @@ template <class Handle>
 bxt_status nearest_point(const Handle* subject, const bxt_vec3* point, double max_distance,
                          const bxt_limits* limits, bxt_closest_point* answer, bxt_error* error) {
   if (const char* name = first_null("tree or scene", subject, "point", point, "answer", answer)) {
-    return refuse(error, name);
+    return refuse_null(error, name);
   }
   if (!has_size(answer)) return refuse(error, "answer: struct_size");
   return guarded(error, [&] {
@@ -48,10 +48,10 @@ template <class Handle>
 bxt_status nearest_points(const Handle* subject, const bxt_vec3* points, std::size_t count,
                           double max_distance, const bxt_limits* limits, bxt_closest_point* answers,
                           bxt_status* statuses, bxt_error* error) {
-  if (subject == nullptr) return refuse(error, "tree or scene");
+  if (subject == nullptr) return refuse_null(error, "tree or scene");
   if (count == 0) return BXT_OK;
   if (const char* name = first_null("points", points, "answers", answers)) {
-    return refuse(error, name);
+    return refuse_null(error, name);
   }
   if (!has_size(answers)) return refuse(error, "answers: struct_size");
   return guarded(error, [&] {
@@ -96,7 +96,7 @@ bxt_status bxt_tree_closest_point_within(const bxt_tree* tree, const bxt_vec3* p
                                          const bxt_approximation* options,
                                          bxt_closest_point* answer, bxt_error* error) {
   if (const char* name = first_null("tree", tree, "point", point, "answer", answer))
-    return refuse(error, name);
+    return refuse_null(error, name);
   if (!has_size(answer)) return refuse(error, "answer: struct_size");
   return guarded(error, [&] {
     return with_approximation(options, error, [&](const PointOptions& read) {

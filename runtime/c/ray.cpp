@@ -54,7 +54,7 @@ template <class Handle, class Query>
 bxt_status one_hit(const Handle* subject, const bxt_ray* ray, const bxt_face_options* options,
                    bxt_ray_hit* hit, bxt_error* error, Query query) {
   if (const char* name = first_null("tree or scene", subject, "ray", ray, "hit", hit))
-    return refuse(error, name);
+    return refuse_null(error, name);
   if (!has_size(hit)) return refuse(error, "hit: struct_size");
   return guarded(error, [&] {
     return with_face_options<Handle>(options, error, [&](const auto& read) {
@@ -69,7 +69,7 @@ template <class Handle>
 bxt_status every_hit(const Handle* subject, const bxt_ray* ray, bxt_ray_visitor visitor,
                      void* context, const bxt_face_options* options, bxt_error* error) {
   if (const char* name = first_null("tree or scene", subject, "ray", ray, "visitor", visitor)) {
-    return refuse(error, name);
+    return refuse_null(error, name);
   }
   return guarded(error, [&] {
     return with_face_options<Handle>(options, error, [&](const auto& read) {
@@ -124,8 +124,8 @@ bxt_status nearest(const Handle* subject, const bxt_ray* ray, bxt_ray_hit* hits,
                    bxt_error* error) {
   using Hit = typename HitOf<Handle>::Type;
   if (const char* name = first_null("tree or scene", subject, "ray", ray, "count", count))
-    return refuse(error, name);
-  if (capacity > 0 && hits == nullptr) return refuse(error, "hits");
+    return refuse_null(error, name);
+  if (capacity > 0 && hits == nullptr) return refuse_null(error, "hits");
   if (capacity > 0 && !has_size(hits)) return refuse(error, "hits: struct_size");
   return guarded(error, [&] {
     return with_face_options<Handle>(options, error, [&](const auto& read) {
@@ -142,9 +142,9 @@ template <class Handle, class One, class Many>
 bxt_status many_hits(const Handle* subject, const bxt_ray* rays, std::size_t count,
                      bxt_ray_hit* hits, bxt_status* statuses, const bxt_face_options* options,
                      bxt_error* error, One one, Many many) {
-  if (subject == nullptr) return refuse(error, "tree or scene");
+  if (subject == nullptr) return refuse_null(error, "tree or scene");
   if (count == 0) return BXT_OK;
-  if (const char* name = first_null("rays", rays, "hits", hits)) return refuse(error, name);
+  if (const char* name = first_null("rays", rays, "hits", hits)) return refuse_null(error, name);
   if (!has_size(hits)) return refuse(error, "hits: struct_size");
   return guarded(error, [&] {
     return with_face_options<Handle>(options, error, [&](const auto& read) {

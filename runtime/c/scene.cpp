@@ -7,7 +7,6 @@
 #include <optional>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <boxtree/boxtree.h>
 
@@ -29,7 +28,7 @@ std::string_view text_of(const char* text) {
 
 bxt_status bxt_scene_bind(const bxt_file* file, const bxt_scene_options* options, bxt_scene** scene,
                           bxt_error* error) {
-  if (const char* name = first_null("file", file, "scene", scene)) return refuse(error, name);
+  if (const char* name = first_null("file", file, "scene", scene)) return refuse_null(error, name);
   bxt_scene_options read = {};
   Allocation allocation;
   if (!read_struct(options, read)) return refuse(error, "options: struct_size");
@@ -38,13 +37,13 @@ bxt_status bxt_scene_bind(const bxt_file* file, const bxt_scene_options* options
   if (read.mesh_count > 0 && (read.meshes == nullptr || !has_size(read.meshes))) {
     return refuse(error, "options: meshes");
   }
-  if (read.moving_count > 0 && read.moving == nullptr) return refuse(error, "options: moving");
+  if (read.moving_count > 0 && read.moving == nullptr) return refuse_null(error, "options: moving");
   // No array is as long: one that is cannot be handed on.
   if (read.moving_count > PTRDIFF_MAX / sizeof(uint32_t)) {
     return refuse(error, "options: moving_count");
   }
   return guarded(error, [&] {
-    std::vector<SceneMeshArrays> meshes;
+    Array<SceneMeshArrays> meshes(&allocation.memory());
     for (std::size_t i = 0; i < read.mesh_count; ++i) {
       bxt_scene_mesh mesh = {};
       std::optional<MeshArrays> arrays;
@@ -62,7 +61,8 @@ bxt_status bxt_scene_bind(const bxt_file* file, const bxt_scene_options* options
                      .require_user_data = read.require_user_data,
                      .require_names = read.require_names,
                      .meshes = meshes,
-                     .moving = {read.moving, static_cast<std::size_t>(read.moving_count)}});
+                     .moving = {read.moving, static_cast<std::size_t>(read.moving_count)},
+                     .memory = allocation.memory()});
     if (!bound) return fail(error, bound.error());
     *scene = allocation.make<bxt_scene>(std::move(*bound));
     return bxt_status{BXT_OK};
@@ -74,20 +74,20 @@ bxt_status bxt_scene_assemble(const bxt_tree* const* trees, size_t tree_count,
                               const bxt_scene_layer* layers, size_t layer_count,
                               const bxt_allocator* allocator, bxt_scene** scene, bxt_error* error) {
   Allocation allocation;
-  if (scene == nullptr) return refuse(error, "scene");
-  if (tree_count > 0 && trees == nullptr) return refuse(error, "trees");
-  if (instance_count > 0 && instances == nullptr) return refuse(error, "instances");
+  if (scene == nullptr) return refuse_null(error, "scene");
+  if (tree_count > 0 && trees == nullptr) return refuse_null(error, "trees");
+  if (instance_count > 0 && instances == nullptr) return refuse_null(error, "instances");
   if (instance_count > 0 && !has_size(instances)) return refuse(error, "instances: struct_size");
-  if (layer_count > 0 && layers == nullptr) return refuse(error, "layers");
+  if (layer_count > 0 && layers == nullptr) return refuse_null(error, "layers");
   if (layer_count > 0 && !has_size(layers)) return refuse(error, "layers: struct_size");
   if (!Allocation::read(allocator, allocation)) return refuse(error, "allocator");
   return guarded(error, [&] {
-    std::vector<Tree> given_trees;
+    Array<Tree> given_trees(&allocation.memory());
     for (std::size_t i = 0; i < tree_count; ++i) {
-      if (trees[i] == nullptr) return refuse(error, "trees: NULL");
+      if (trees[i] == nullptr) return refuse_null(error, "trees: NULL");
       given_trees.push_back(trees[i]->inside);
     }
-    std::vector<PlacedTree> placed;
+    Array<PlacedTree> placed(&allocation.memory());
     for (std::size_t i = 0; i < instance_count; ++i) {
       bxt_placed_tree read = {};
       if (!read_element(instances, i, read)) return refuse(error, "instances: struct_size");
@@ -98,7 +98,7 @@ bxt_status bxt_scene_assemble(const bxt_tree* const* trees, size_t tree_count,
                         .user_data = read.user_data,
                         .name = text_of(read.name)});
     }
-    std::vector<SceneLayer> given_layers;
+    Array<SceneLayer> given_layers(&allocation.memory());
     for (std::size_t i = 0; i < layer_count; ++i) {
       bxt_scene_layer read = {};
       if (!read_element(layers, i, read)) return refuse(error, "layers: struct_size");
@@ -108,7 +108,8 @@ bxt_status bxt_scene_assemble(const bxt_tree* const* trees, size_t tree_count,
                               .collides_with = read.collides_with,
                               .queries = static_cast<QueryKinds>(read.queries)});
     }
-    Result<Scene> assembled = Scene::assemble(given_trees, placed, given_layers);
+    Result<Scene> assembled =
+        Scene::assemble(given_trees, placed, given_layers, allocation.memory());
     if (!assembled) return fail(error, assembled.error());
     *scene = allocation.make<bxt_scene>(std::move(*assembled));
     return bxt_status{BXT_OK};
@@ -126,7 +127,7 @@ uint32_t bxt_scene_instance_count(const bxt_scene* scene) {
 bxt_status bxt_scene_instance(const bxt_scene* scene, uint32_t number, bxt_instance* instance,
                               bxt_error* error) {
   if (const char* name = first_null("scene", scene, "instance", instance))
-    return refuse(error, name);
+    return refuse_null(error, name);
   if (!has_size(instance)) return refuse(error, "instance: struct_size");
   return guarded(error, [&] {
     const Result<InstanceInfo> found = scene->inside.info(number);
@@ -148,7 +149,7 @@ size_t bxt_scene_instance_name(const bxt_scene* scene, uint32_t number, char* bu
 bxt_status bxt_scene_find_instance(const bxt_scene* scene, const char* name, uint32_t* number,
                                    bxt_error* error) {
   if (const char* null = first_null("scene", scene, "name", name, "number", number))
-    return refuse(error, null);
+    return refuse_null(error, null);
   return guarded(error, [&] {
     const Result<std::uint32_t> found = scene->inside.find_instance(name);
     if (found) *number = *found;
@@ -158,7 +159,7 @@ bxt_status bxt_scene_find_instance(const bxt_scene* scene, const char* name, uin
 
 bxt_status bxt_scene_pose(const bxt_scene* scene, uint32_t number, bxt_pose* pose,
                           bxt_error* error) {
-  if (const char* name = first_null("scene", scene, "pose", pose)) return refuse(error, name);
+  if (const char* name = first_null("scene", scene, "pose", pose)) return refuse_null(error, name);
   return guarded(error, [&] {
     const Result<Pose> found = scene->inside.pose(number);
     if (found) *pose = to_c(*found);
@@ -172,7 +173,7 @@ uint32_t bxt_scene_tree_count(const bxt_scene* scene) {
 
 bxt_status bxt_scene_copy_tree(const bxt_scene* scene, uint32_t number,
                                const bxt_allocator* allocator, bxt_tree** tree, bxt_error* error) {
-  if (const char* name = first_null("scene", scene, "tree", tree)) return refuse(error, name);
+  if (const char* name = first_null("scene", scene, "tree", tree)) return refuse_null(error, name);
   Allocation allocation;
   if (!Allocation::read(allocator, allocation)) return refuse(error, "allocator");
   if (number >= scene->inside.trees().size())
@@ -211,7 +212,7 @@ size_t bxt_scene_material_name(const bxt_scene* scene, uint32_t material, char* 
 bxt_status bxt_scene_triangle(const bxt_scene* scene, const bxt_face* face, uint32_t half,
                               bxt_triangle* triangle, bxt_error* error) {
   if (const char* name = first_null("scene", scene, "face", face, "triangle", triangle))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return guarded(error, [&] {
     const Result<Triangle> found = scene->inside.triangle(scene_face(*face), half);
     if (found) *triangle = to_c(*found);
@@ -222,7 +223,7 @@ bxt_status bxt_scene_triangle(const bxt_scene* scene, const bxt_face* face, uint
 bxt_status bxt_scene_active_edges(const bxt_scene* scene, const bxt_face* face, uint32_t half,
                                   uint32_t* edges, bxt_error* error) {
   if (const char* name = first_null("scene", scene, "face", face, "edges", edges))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return guarded(error, [&] {
     const Result<std::uint32_t> found = active_edges(scene->inside, scene_face(*face), half);
     if (found) *edges = *found;
@@ -232,7 +233,7 @@ bxt_status bxt_scene_active_edges(const bxt_scene* scene, const bxt_face* face, 
 
 bxt_status bxt_scene_set_enabled(bxt_scene* scene, uint32_t instance, bool is_enabled,
                                  bxt_error* error) {
-  if (scene == nullptr) return refuse(error, "scene");
+  if (scene == nullptr) return refuse_null(error, "scene");
   return guarded(error,
                  [&] { return finish(scene->inside.set_enabled(instance, is_enabled), error); });
 }
@@ -243,7 +244,7 @@ bool bxt_scene_is_enabled(const bxt_scene* scene, uint32_t instance) {
 
 bxt_status bxt_scene_set_user_data(bxt_scene* scene, uint32_t instance, uint64_t data,
                                    bxt_error* error) {
-  if (scene == nullptr) return refuse(error, "scene");
+  if (scene == nullptr) return refuse_null(error, "scene");
   return guarded(error, [&] { return finish(scene->inside.set_user_data(instance, data), error); });
 }
 
@@ -252,19 +253,19 @@ uint64_t bxt_scene_user_data(const bxt_scene* scene, uint32_t instance) {
 }
 
 bxt_status bxt_scene_make_movable(bxt_scene* scene, uint32_t instance, bxt_error* error) {
-  if (scene == nullptr) return refuse(error, "scene");
+  if (scene == nullptr) return refuse_null(error, "scene");
   return guarded(error, [&] { return finish(scene->inside.make_movable(instance), error); });
 }
 
 bxt_status bxt_scene_update(bxt_scene* scene, uint32_t instance, const bxt_pose* pose,
                             bxt_error* error) {
-  if (const char* name = first_null("scene", scene, "pose", pose)) return refuse(error, name);
+  if (const char* name = first_null("scene", scene, "pose", pose)) return refuse_null(error, name);
   return guarded(error,
                  [&] { return finish(scene->inside.update(instance, to_cpp(pose)), error); });
 }
 
 bxt_status bxt_scene_rebuild(bxt_scene* scene, bxt_error* error) {
-  if (scene == nullptr) return refuse(error, "scene");
+  if (scene == nullptr) return refuse_null(error, "scene");
   return guarded(error, [&] {
     scene->inside.rebuild();
     return bxt_status{BXT_OK};

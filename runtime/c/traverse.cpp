@@ -15,7 +15,7 @@ using namespace boxtree::c;
 bxt_status bxt_tree_traverse(const bxt_tree* tree, bxt_box_test test, bxt_triangle_visitor visitor,
                              void* context, const bxt_limits* limits, bxt_error* error) {
   if (const char* name = first_null("tree", tree, "test", test, "visitor", visitor))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return guarded(error, [&] {
     return with_limits<bxt_tree>(limits, error, [&](const QueryLimits& read) {
       const auto intersect = [&](const Eigen::AlignedBox3d& box) {

@@ -16,7 +16,7 @@ using namespace boxtree::c;
 
 bxt_status bxt_tree_bind(const bxt_file* file, uint32_t number, const bxt_tree_options* options,
                          bxt_tree** tree, bxt_error* error) {
-  if (const char* name = first_null("file", file, "tree", tree)) return refuse(error, name);
+  if (const char* name = first_null("file", file, "tree", tree)) return refuse_null(error, name);
   bxt_tree_options read = {};
   BindOptions required;
   Allocation allocation;
@@ -40,7 +40,7 @@ bxt_status bxt_tree_bind(const bxt_file* file, uint32_t number, const bxt_tree_o
 
 bxt_status bxt_tree_copy_without_duplicates(const bxt_tree* tree, const bxt_allocator* allocator,
                                             bxt_tree** copy, bxt_error* error) {
-  if (const char* name = first_null("tree", tree, "copy", copy)) return refuse(error, name);
+  if (const char* name = first_null("tree", tree, "copy", copy)) return refuse_null(error, name);
   Allocation allocation;
   if (!Allocation::read(allocator, allocation)) return refuse(error, "allocator");
   return guarded(error, [&] {
@@ -111,7 +111,7 @@ bool bxt_tree_has_user_data(const bxt_tree* tree) {
 bxt_status bxt_tree_triangle(const bxt_tree* tree, const bxt_face* face, uint32_t half,
                              bxt_triangle* triangle, bxt_error* error) {
   if (const char* name = first_null("tree", tree, "face", face, "triangle", triangle))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return guarded(error, [&] {
     const Result<Triangle> found = tree->inside.triangle(face_ref(*face), half);
     if (found) *triangle = to_c(*found);
@@ -125,7 +125,7 @@ bxt_status bxt_tree_active_edges([[maybe_unused]] const bxt_tree* tree,
                                  bxt_error* error) {
 #if BOXTREE_HAS_CAST_QUERIES
   if (const char* name = first_null("tree", tree, "face", face, "edges", edges))
-    return refuse(error, name);
+    return refuse_null(error, name);
   return guarded(error, [&] {
     const Result<std::uint32_t> found = active_edges(tree->inside, face_ref(*face), half);
     if (found) *edges = *found;

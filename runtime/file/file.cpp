@@ -13,7 +13,7 @@
 namespace boxtree {
 
 Result<File> File::open(const std::string& path, const OpenOptions& options) {
-  Result<Mapping> mapping = options.copy ? Mapping::copy(path) : Mapping::map(path);
+  Result<Mapping> mapping = options.copy ? Mapping::copy(path, options.memory) : Mapping::map(path);
   if (!mapping) return mapping.error();
   Result<File> checked = OpenFile::open(std::move(*mapping), options);
   if (!checked) {
@@ -26,7 +26,10 @@ Result<File> File::open(Bytes memory, const OpenOptions& options) {
   return OpenFile::open(memory, options);
 }
 
-File::File(std::unique_ptr<const OpenFile> open) noexcept : open_(std::move(open)) {}
+File::File(std::unique_ptr<const OpenFile, Ends> open) noexcept : open_(std::move(open)) {}
+void File::Ends::operator()(const OpenFile* open) const noexcept {
+  OpenFile::end(open);
+}
 File::File(File&&) noexcept = default;
 File& File::operator=(File&&) noexcept = default;
 File::~File() = default;
@@ -45,7 +48,8 @@ bool File::is_pack() const noexcept {
 }
 Result<Member> File::member(std::uint32_t index) const {
   if (index >= tree_count()) return index_error(Errc::kTreeIndex, "tree", index, tree_count());
-  Result<File> file = is_pack() ? open_->open_member(index) : open(bytes());
+  Result<File> file =
+      is_pack() ? open_->open_member(index) : open(bytes(), {.memory = open_->memory()});
   if (!file) return file.error();
   return Member{std::move(*file), is_pack() ? open_->pack_row(index).tree : index};
 }

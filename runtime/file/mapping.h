@@ -8,6 +8,7 @@
 
 #include <boxtree/error.h>
 #include <boxtree/file.h>
+#include <boxtree/memory.h>
 
 #include "format/bytes.h"
 
@@ -34,24 +35,27 @@ class Mapping {
   /// Maps a file that is open already; `name` is for messages. The caller keeps the descriptor.
   static Result<Mapping> map(int descriptor, const std::string& name);
 
-  /// Reads `path` into private memory, which later changes of the file do not affect.
-  static Result<Mapping> copy(const std::string& path);
+  /// Reads `path` into private memory, which later changes of the file do not affect. `memory`:
+  /// where that is taken from, pages of the system if it has no functions.
+  static Result<Mapping> copy(const std::string& path, const Memory& memory = {});
 
-  [[nodiscard]] Bytes bytes() const noexcept {
-    return {data_, size_};
-  }
+  [[nodiscard]] Bytes bytes() const noexcept { return {data_, size_}; }
 
   /// See File::advise. Does nothing with memory that no file is behind.
   bool advise(Access access) const noexcept;
 
  private:
   friend class WritableMapping;
-  Mapping(const std::byte* data, std::size_t size, bool is_of_file) noexcept
-      : data_(data), size_(size), is_of_file_(is_of_file) {}
+  Mapping(const std::byte* data, std::size_t size, bool is_of_file,
+          const Memory& memory = {}) noexcept
+      : data_(data), size_(size), is_of_file_(is_of_file), memory_(memory) {}
+
+  void unmap() noexcept;
 
   const std::byte* data_ = nullptr;
   std::size_t size_ = 0;
   bool is_of_file_ = false;  // else a copy in memory
+  Memory memory_;            // where that was taken from
 #ifdef _WIN32
   static Result<Mapping> map_handle(void* file, const std::string& name);
 
@@ -62,15 +66,18 @@ class Mapping {
 /// Memory that is filled once and then becomes a Mapping. Move-only.
 class WritableMapping {
  public:
-  /// Zeroed memory. Error: kOutOfMemory when there is not enough of it.
-  static Result<WritableMapping> allocate(std::size_t size);
+  /// Memory, of the system if `memory` has no functions, which then is zeroed. Error: kOutOfMemory
+  /// when there is not enough of it.
+  static Result<WritableMapping> allocate(std::size_t size, const Memory& memory = {});
 
   [[nodiscard]] std::span<std::byte> bytes() noexcept { return {data_, mapping_.size_}; }
   [[nodiscard]] Mapping finish() && noexcept { return std::move(mapping_); }
 
  private:
-  WritableMapping(std::byte* data, std::size_t size) noexcept
-      : mapping_(data, size, false), data_(data) {}
+  WritableMapping(std::byte* data, std::size_t size, const Memory& memory = {}) noexcept
+      : mapping_(data, size, false, memory), data_(data) {}
+  // Of the system, zeroed; nullptr where there are none. Mapping::unmap() gives them back.
+  static void* pages(std::size_t size) noexcept;
 
   Mapping mapping_;
   std::byte* data_;

@@ -58,7 +58,7 @@ Result<std::size_t> regular_file_size(int file, const std::string& path) {
 
 }  // namespace
 
-Mapping::~Mapping() {
+void Mapping::unmap() noexcept {
   // munmap takes void*; the bytes were never writable through this object.
   if (data_ != nullptr) ::munmap(const_cast<std::byte*>(data_), size_);
 }
@@ -102,12 +102,12 @@ bool Mapping::advise([[maybe_unused]] Access access) const noexcept {
 #endif
 }
 
-Result<Mapping> Mapping::copy(const std::string& path) {
+Result<Mapping> Mapping::copy(const std::string& path, const Memory& memory) {
   const Descriptor file(path);
   const Result<std::size_t> size = regular_file_size(file.value(), path);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
-  Result<WritableMapping> copied = WritableMapping::allocate(*size);
+  Result<WritableMapping> copied = WritableMapping::allocate(*size, memory);
   if (!copied) return error_at(error_with(copied.code(), path, ": ").detail, copied.error());
   std::byte* const data = copied->bytes().data();
   for (std::size_t done = 0; done < *size;) {
@@ -120,13 +120,9 @@ Result<Mapping> Mapping::copy(const std::string& path) {
   return std::move(*copied).finish();
 }
 
-Result<WritableMapping> WritableMapping::allocate(std::size_t size) {
-  if (size == 0) return WritableMapping(nullptr, 0);
+void* WritableMapping::pages(std::size_t size) noexcept {
   void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (data == MAP_FAILED) {
-    return error_with(Errc::kOutOfMemory, {}, "no memory for # bytes", {size});
-  }
-  return WritableMapping(static_cast<std::byte*>(data), size);
+  return data == MAP_FAILED ? nullptr : data;
 }
 
 }  // namespace boxtree

@@ -66,7 +66,7 @@ Result<std::size_t> regular_file_size(HANDLE file, const std::string& path) {
 
 }  // namespace
 
-Mapping::~Mapping() {
+void Mapping::unmap() noexcept {
   if (file_ != nullptr) ::CloseHandle(file_);
   if (data_ == nullptr) return;
   void* const data = const_cast<std::byte*>(data_);
@@ -108,12 +108,12 @@ bool Mapping::advise(Access access) const noexcept {
   return ::PrefetchVirtualMemory(::GetCurrentProcess(), 1, &range, 0) != 0;
 }
 
-Result<Mapping> Mapping::copy(const std::string& path) {
+Result<Mapping> Mapping::copy(const std::string& path, const Memory& memory) {
   const Handle file(open_file(path, true));
   const Result<std::size_t> size = regular_file_size(file.value(), path);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
-  Result<WritableMapping> copied = WritableMapping::allocate(*size);
+  Result<WritableMapping> copied = WritableMapping::allocate(*size, memory);
   if (!copied) return Error{copied.code(), path + ": " + copied.error().detail};
   constexpr std::size_t kMostAtATime = std::size_t{1} << 30;
   std::byte* const data = copied->bytes().data();
@@ -129,13 +129,8 @@ Result<Mapping> Mapping::copy(const std::string& path) {
   return std::move(*copied).finish();
 }
 
-Result<WritableMapping> WritableMapping::allocate(std::size_t size) {
-  if (size == 0) return WritableMapping(nullptr, 0);
-  void* const data = ::VirtualAlloc(nullptr, size, MEM_COMMIT | MEM_RESERVE, PAGE_READWRITE);
-  if (data == nullptr) {
-    return Error{Errc::kOutOfMemory, "no memory for " + std::to_string(size) + " bytes"};
-  }
-  return WritableMapping(static_cast<std::byte*>(data), size);
+void* WritableMapping::pages(std::size_t size) noexcept {
+  return ::VirtualAlloc(nullptr, size, MEM_COMMIT | MEM_RESERVE, PAGE_READWRITE);
 }
 
 }  // namespace boxtree

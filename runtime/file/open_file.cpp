@@ -13,22 +13,34 @@
 
 namespace boxtree {
 
+OpenFile::Owner OpenFile::make(const Memory& memory) {
+  void* const place = allocate(&memory, sizeof(OpenFile), alignof(OpenFile));
+  return Owner(::new (place) OpenFile(memory));
+}
+
+void OpenFile::end(const OpenFile* open) noexcept {
+  const Memory memory = open->memory_;
+  auto* const place = const_cast<OpenFile*>(open);  // allocated here, as one that changes
+  place->~OpenFile();
+  release(&memory, place, sizeof(OpenFile), alignof(OpenFile));
+}
+
 Result<File> OpenFile::open(Mapping owned, const OpenOptions& options) {
-  std::unique_ptr<OpenFile> file(new OpenFile());
+  Owner file = make(options.memory);
   file->bytes_ = owned.bytes();
   file->mapping_ = std::move(owned);
   return check(std::move(file), options, kFeaturePack);
 }
 
 Result<File> OpenFile::open(Bytes memory, const OpenOptions& options) {
-  std::unique_ptr<OpenFile> file(new OpenFile());
+  Owner file = make(options.memory);
   file->bytes_ = memory;
   return check(std::move(file), options, kFeaturePack);
 }
 
-Result<File> OpenFile::check(std::unique_ptr<OpenFile> file, const OpenOptions& options,
-                             std::uint32_t known_features) {
-  Result<Container> container = check_container(file->bytes_, checksum, known_features);
+Result<File> OpenFile::check(Owner file, const OpenOptions& options, std::uint32_t known_features) {
+  Result<Container> container =
+      check_container(file->bytes_, checksum, known_features, &file->memory_);
   if (!container) return container.error();
   file->container_ = std::move(*container);
 
@@ -69,7 +81,7 @@ Result<File> OpenFile::open_member(std::uint32_t index) const {
   const Bytes members = section(SectionKind::kMembers);
   Error error{Errc::kRecordInvalid, "its member ends behind section members"};
   if (in_range(row.offset, row.bytes, members.size())) {
-    std::unique_ptr<OpenFile> opened(new OpenFile());
+    Owner opened = make(memory_);
     opened->bytes_ = members.subspan(row.offset, row.bytes);
     Result<File> file = check(std::move(opened), {}, 0);  // no pack in a pack
     if (file && row.tree < file->tree_count()) return file;

@@ -9,6 +9,7 @@
 #include <boxtree/file.h>
 
 #include "format/container.h"
+#include "format/memory.h"
 #include "runtime/file/mapping.h"
 
 namespace boxtree {
@@ -27,6 +28,11 @@ class OpenFile {
   /// The inside of a File.
   [[nodiscard]] static const OpenFile& of(const File& file) noexcept { return *file.open_; }
 
+  /// Gives the memory back that an inside took; the last thing that is done with it.
+  static void end(const OpenFile* open) noexcept;
+
+  /// What all that it owns is allocated from.
+  [[nodiscard]] const Memory& memory() const noexcept { return memory_; }
   [[nodiscard]] Bytes bytes() const noexcept { return bytes_; }
   /// See File::advise.
   bool advise(Access access) const noexcept { return mapping_.advise(access); }
@@ -56,10 +62,13 @@ class OpenFile {
   [[nodiscard]] Status verify_checksums() const;
 
  private:
-  OpenFile() = default;
-  static Result<File> check(std::unique_ptr<OpenFile> file, const OpenOptions& options,
-                            std::uint32_t known_features);
+  using Owner = std::unique_ptr<OpenFile, File::Ends>;
 
+  explicit OpenFile(const Memory& memory) noexcept : memory_(memory) {}
+  static Owner make(const Memory& memory);
+  static Result<File> check(Owner file, const OpenOptions& options, std::uint32_t known_features);
+
+  Memory memory_;
   Mapping mapping_;
   Bytes bytes_;
   Container container_;

@@ -29,11 +29,13 @@
 //
 // Memory. Handles come from functions with "open", "bind", "assemble" or "copy" in their names and
 // are given back, once, to the one that is named there; NULL is given back for nothing. The memory
-// of a handle comes from the bxt_allocator that is given, if any, or else from operator new; what
-// it owns, a copied file and the instances of a scene, from operator new always. Queries allocate
-// nothing. Texts are UTF-8; functions that return a text copy as much of it as fits into `buffer`,
-// with a 0 at the end, and return its whole length without this 0, as snprintf does: with NULL and
-// 0 the length alone. A text that is cut ends with a whole character.
+// of a handle and of all that it owns, a copied file and the instances of a scene among it, comes
+// from the bxt_allocator that is given, if any, or else from operator new (of a copied file, from
+// pages of the system); texts that a call needs for itself, names of files and the words of errors,
+// from operator new always. Queries allocate nothing. Texts are UTF-8; functions that return a text
+// copy as much of it as fits into `buffer`, with a 0 at the end, and return its whole length
+// without this 0, as snprintf does: with NULL and 0 the length alone. A text that is cut ends with
+// a whole character.
 //
 // Callbacks are a function and a `context`, which is handed through. They are called on the thread
 // of the query, before it returns, and must return: no longjmp, no exception. A callback may make
@@ -296,8 +298,9 @@ static inline bxt_pose bxt_translation(double x, double y, double z) {
 
 // ---- Memory ----------------------------------------------------------------------------------
 
-/// Where the memory of a handle comes from: `allocate` is called once by the function that makes
-/// it, `release` by the one that takes it back. The struct itself is copied.
+/// Where the memory of a handle and of what it owns comes from. Called by the functions that make
+/// the handle, change what it owns or take it back, on their threads. The struct itself is copied;
+/// what `context` points to has to live as long as the handle.
 typedef struct bxt_allocator {
   uint32_t struct_size;  ///< sizeof(bxt_allocator).
   void* context;         ///< Handed to both.

@@ -31,9 +31,8 @@ Pose pose_of(const std::byte* numbers, std::uint32_t bytes) noexcept {
 void BoundScene::rebuild() {
   if (moving_.empty()) return;
   const DefaultFloatState state;
-  std::vector<Box<double>> boxes;
-  boxes.reserve(moving_.size());
-  for (const Moving& moving : moving_) boxes.push_back(to_frame(moving.bounds.world));
+  Array<Box<double>> boxes(moving_.size(), empty_box<double>(), &memory_);
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = to_frame(moving_[i].bounds.world);
   moving_tree_.build(boxes);
 }
 

@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <boxtree/scene.h>
 
@@ -30,7 +29,9 @@ class BoundScene {
  public:
   static Result<Scene> bind(const File& file, const SceneOptions& options);
   static Result<Scene> assemble(std::span<const Tree> trees, std::span<const PlacedTree> instances,
-                                std::span<const SceneLayer> layers);
+                                std::span<const SceneLayer> layers, const Memory& memory);
+  /// Gives the memory back that an inside took; the last thing that is done with it.
+  static void end(BoundScene* scene) noexcept;
 
   /// The inside of a Scene.
   [[nodiscard]] static const BoundScene& of(const Scene& scene) noexcept { return *scene.bound_; }
@@ -148,11 +149,23 @@ class BoundScene {
   [[nodiscard]] Box<double> to_frame(const Box<double>& units) const noexcept;
 
  private:
-  BoundScene() = default;
+  using Owner = std::unique_ptr<BoundScene, Scene::Ends>;
+
+  explicit BoundScene(const Memory& memory) noexcept
+      : memory_(memory),
+        trees_(&memory_),
+        records_(&memory_),
+        first_materials_(&memory_),
+        moving_(&memory_),
+        moving_tree_(&memory_),
+        conditions_(&memory_),
+        disabled_(&memory_),
+        user_data_(&memory_) {}
+  static Owner make(const Memory& memory);
   Status bind_sections(const File& file);
   Status bind_trees(const File& file, const SceneOptions& options);
   Status check_parts(const SceneOptions& options) const;
-  Status bind_moving(std::vector<std::uint32_t> numbers);
+  Status bind_moving(Array<std::uint32_t> numbers);
   Status number_materials();
   Status keep_records(std::span<const PlacedTree> instances, std::span<const SceneLayer> layers);
   Status place_in_frame(std::span<const PlacedTree> instances);
@@ -170,9 +183,10 @@ class BoundScene {
   [[nodiscard]] Pose stored_pose(std::uint32_t number) const noexcept;
   [[nodiscard]] const Moving* find_moving(std::uint32_t number) const noexcept;
 
+  Memory memory_;
   TopLevel top_;
   Frame frame_;
-  std::vector<Tree> trees_;
+  Array<Tree> trees_;
   Bytes names_;
   Bytes left_out_;
   InstanceEdgesView edges_;
@@ -182,15 +196,15 @@ class BoundScene {
   MaterialNames materials_;
   // Of a scene that a program assembled: the bytes of its records, which the pointers above lead
   // to, and of each tree the number of its file's first material, then how many there are.
-  std::vector<std::byte> records_;
-  std::vector<std::uint32_t> first_materials_;
-  std::vector<Moving> moving_;  // by instance
+  Array<std::byte> records_;
+  Array<std::uint32_t> first_materials_;
+  Array<Moving> moving_;  // by instance
   MovingTree moving_tree_;
   Largest conditions_;  // of moving instances
   bool has_detached_ = false;
   // Of each instance, or empty while none was set.
-  std::vector<bool> disabled_;
-  std::vector<std::uint64_t> user_data_;
+  Array<bool> disabled_;
+  Array<std::uint64_t> user_data_;
 };
 
 }  // namespace boxtree

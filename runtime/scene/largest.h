@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
-#include <vector>
+
+#include "format/memory.h"
 
 namespace boxtree {
 
@@ -13,6 +14,8 @@ namespace boxtree {
 /// The last half are the numbers, which are not negative.
 class Largest {
  public:
+  explicit Largest(const Memory* memory) noexcept : largest_(memory) {}
+
   /// Makes room for `count` numbers, all zero. Allocates.
   void reset(std::size_t count) {
     largest_.assign(2 * std::bit_ceil(std::max<std::size_t>(count, 1)), 0.0);
@@ -29,7 +32,7 @@ class Largest {
   [[nodiscard]] double of_all() const noexcept { return largest_.empty() ? 0 : largest_[1]; }
 
  private:
-  std::vector<double> largest_;
+  Array<double> largest_;
 };
 
 }  // namespace boxtree

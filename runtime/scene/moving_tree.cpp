@@ -48,7 +48,7 @@ void MovingTree::build(std::span<const Box<double>> boxes) {
   nodes_.assign(2 * std::size_t{leaves_}, empty_box<double>());
   place_.resize(count);
   at_place_.assign(leaves_, 0);
-  std::vector<std::uint32_t> numbers(count);
+  Array<std::uint32_t> numbers(count, place_.get_allocator());
   std::iota(numbers.begin(), numbers.end(), 0u);
   sort_in_space(numbers, leaves_, boxes);
   for (std::uint32_t place = 0; place < count; ++place) {

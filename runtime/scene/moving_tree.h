@@ -6,9 +6,9 @@
 #include <bit>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "format/children.h"
+#include "format/memory.h"
 #include "runtime/tree/bound_codec.h"
 
 namespace boxtree {
@@ -37,6 +37,9 @@ class MovingTree {
     }
   };
 
+  explicit MovingTree(const Memory* memory = nullptr) noexcept
+      : nodes_(memory), place_(memory), at_place_(memory) {}
+
   /// Assigns places to instances with these boxes and builds the tree over them. Allocates.
   void build(std::span<const Box<double>> boxes);
   /// Gives the instance with number `moving` another box; O(log n), no allocation.
@@ -60,9 +63,9 @@ class MovingTree {
   void join(std::uint32_t node) noexcept;
 
   std::uint32_t leaves_ = 0;
-  std::vector<Box<double>> nodes_;       // [2 leaves_]; node 0 is not used
-  std::vector<std::uint32_t> place_;     // of each moving instance
-  std::vector<std::uint32_t> at_place_;  // [leaves_]; unspecified where no instance is
+  Array<Box<double>> nodes_;       // [2 leaves_]; node 0 is not used
+  Array<std::uint32_t> place_;     // of each moving instance
+  Array<std::uint32_t> at_place_;  // [leaves_]; unspecified where no instance is
 };
 
 template <class S>

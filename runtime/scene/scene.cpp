@@ -12,11 +12,14 @@ Result<Scene> Scene::bind(const File& file, const SceneOptions& options) {
   return BoundScene::bind(file, options);
 }
 Result<Scene> Scene::assemble(std::span<const Tree> trees, std::span<const PlacedTree> instances,
-                              std::span<const SceneLayer> layers) {
-  return BoundScene::assemble(trees, instances, layers);
+                              std::span<const SceneLayer> layers, const Memory& memory) {
+  return BoundScene::assemble(trees, instances, layers, memory);
 }
 
-Scene::Scene(std::unique_ptr<BoundScene> bound) noexcept : bound_(std::move(bound)) {}
+Scene::Scene(std::unique_ptr<BoundScene, Ends> bound) noexcept : bound_(std::move(bound)) {}
+void Scene::Ends::operator()(BoundScene* bound) const noexcept {
+  BoundScene::end(bound);
+}
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;

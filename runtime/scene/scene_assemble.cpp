@@ -101,9 +101,9 @@ class RecordWriter {
 
 Result<Scene> BoundScene::assemble(std::span<const Tree> trees,
                                    std::span<const PlacedTree> instances,
-                                   std::span<const SceneLayer> layers) {
+                                   std::span<const SceneLayer> layers, const Memory& memory) {
   const DefaultFloatState state;
-  std::unique_ptr<BoundScene> scene(new BoundScene);
+  Owner scene = make(memory);
   scene->trees_.assign(trees.begin(), trees.end());
   if (Status status = scene->number_materials(); !status) return status.error();
   if (Status status = scene->keep_records(instances, layers); !status) return status.error();
@@ -166,9 +166,8 @@ Status BoundScene::keep_records(std::span<const PlacedTree> instances,
 // First in the world, for the frame around all of them.
 Status BoundScene::place_in_frame(std::span<const PlacedTree> instances) {
   if (Status status = place_each(instances); !status) return status;
-  std::vector<Box<double>> boxes;
-  boxes.reserve(moving_.size());
-  for (const Moving& moving : moving_) boxes.push_back(moving.bounds.world);
+  Array<Box<double>> boxes(moving_.size(), empty_box<double>(), &memory_);
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = moving_[i].bounds.world;
   frame_ = frame_around(boxes, top_.scene.scale_exponent);
   if (Status status = place_each(instances); !status) return status;
   index_moving();

@@ -11,13 +11,24 @@
 
 namespace boxtree {
 
+BoundScene::Owner BoundScene::make(const Memory& memory) {
+  void* const place = allocate(&memory, sizeof(BoundScene), alignof(BoundScene));
+  return Owner(::new (place) BoundScene(memory));
+}
+
+void BoundScene::end(BoundScene* scene) noexcept {
+  const Memory memory = scene->memory_;
+  scene->~BoundScene();
+  release(&memory, scene, sizeof(BoundScene), alignof(BoundScene));
+}
+
 Result<Scene> BoundScene::bind(const File& file, const SceneOptions& options) {
   const DefaultFloatState state;
-  std::unique_ptr<BoundScene> scene(new BoundScene);
+  Owner scene = make(options.memory);
   if (Status status = scene->bind_sections(file); !status) return status.error();
   if (Status status = scene->bind_trees(file, options); !status) return status.error();
   if (Status status = scene->check_parts(options); !status) return status.error();
-  std::vector<std::uint32_t> moving(options.moving.begin(), options.moving.end());
+  Array<std::uint32_t> moving(options.moving.begin(), options.moving.end(), &scene->memory_);
   for (std::uint32_t i = scene->record().static_count; i < scene->instance_count(); ++i) {
     moving.push_back(i);
   }
@@ -28,7 +39,10 @@ Result<Scene> BoundScene::bind(const File& file, const SceneOptions& options) {
 Status BoundScene::bind_sections(const File& opened) {
   const OpenFile& file = OpenFile::of(opened);
   const Bytes section = file.section(SectionKind::kScene);
-  if (section.empty()) return Errc::kNoScene;
+  if (section.empty()) {
+    return Error{Errc::kNoScene,
+                 file.is_pack() ? "a pack has none; bind the file of File::member()" : ""};
+  }
   const auto sized = [&](SectionKind kind, std::uint64_t count, std::uint64_t element) {
     return sized_section(file.section(kind), kind, count, element);
   };
@@ -150,13 +164,13 @@ bool BoundScene::has_names() const noexcept {
 Status BoundScene::make_movable(std::uint32_t instance) {
   const DefaultFloatState state;
   const Moving* const known = find_moving(instance);
-  if (known == nullptr) return bind_moving({instance});
+  if (known == nullptr) return bind_moving(Array<std::uint32_t>(1, instance, &memory_));
   moving_[static_cast<std::size_t>(known - moving_.data())].placed.at_rest = false;
   return {};
 }
 
 // Adds instances to those that move, all or none of them.
-Status BoundScene::bind_moving(std::vector<std::uint32_t> numbers) {
+Status BoundScene::bind_moving(Array<std::uint32_t> numbers) {
   bool detaches = has_detached_;
   for (const std::uint32_t number : numbers) {
     if (number >= instance_count()) {
@@ -167,10 +181,10 @@ Status BoundScene::bind_moving(std::vector<std::uint32_t> numbers) {
   for (const Moving& moving : moving_) numbers.push_back(moving.instance);
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  std::vector<Moving> moving;
+  Array<Moving> moving(&memory_);
   for (const std::uint32_t number : numbers) {
     if (const Moving* const known = find_moving(number); known != nullptr) {
-      moving.push_back(*known);
+      moving.push_back(Moving(*known));  // moved as the others, so that vector grows in one way
       continue;
     }
     const auto corrupt = [number](const char* what) {

@@ -14,7 +14,8 @@ static void check(bxt_status status) {
   exit(1);
 }
 
-/* An allocator that knows how many pieces are in use. malloc() aligns as handles need. */
+/* An allocator that knows how many pieces are in use. malloc() aligns as all but copies of files
+ * need. */
 static void* allocate(void* context, size_t size, size_t alignment) {
   (void)alignment;
   ++*(int*)context;

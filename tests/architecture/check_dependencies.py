@@ -36,7 +36,7 @@ PUBLIC = "boxtree/"
 C_HEADER = "boxtree_c.h"
 OF_C99 = ("math.h", "stdbool.h", "stddef.h", "stdint.h")
 # What format shares with applications, in format/include.
-OF_FORMAT = ("boxtree/error.h", "boxtree/export.h", "boxtree/kinds.h")
+OF_FORMAT = ("boxtree/error.h", "boxtree/export.h", "boxtree/kinds.h", "boxtree/memory.h")
 
 
 def folder_of(path):

@@ -11,6 +11,7 @@
 #include <boxtree/error.h>
 #include <boxtree/export.h>
 #include <boxtree/kinds.h>
+#include <boxtree/memory.h>
 
 namespace boxtree {
 
@@ -24,6 +25,9 @@ struct OpenOptions {
   bool copy = false;
   /// Check the XXH3 of every section [default false]: reads the whole file.
   bool verify_checksums = false;
+  /// Of all that the File owns, a copy included, and of members of a pack [operator new]. Texts of
+  /// errors come from operator new always.
+  Memory memory = {};
 };
 
 /// How an application is going to read a mapped file.
@@ -90,9 +94,12 @@ class BOXTREE_API File {
 
  private:
   friend class OpenFile;
-  explicit File(std::unique_ptr<const OpenFile> open) noexcept;
+  struct Ends {  // to where its memory came from
+    void operator()(const OpenFile* open) const noexcept;
+  };
+  explicit File(std::unique_ptr<const OpenFile, Ends> open) noexcept;
 
-  std::unique_ptr<const OpenFile> open_;
+  std::unique_ptr<const OpenFile, Ends> open_;
 };
 
 /// A tree where it is stored.

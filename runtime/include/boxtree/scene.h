@@ -66,6 +66,8 @@ struct SceneOptions {
   /// Static instances that update() shall be allowed to move: doors, say; see make_movable(). The
   /// others that move are known from the file.
   std::span<const std::uint32_t> moving = {};
+  /// Of all that the Scene owns [operator new]. Texts of errors come from operator new always.
+  Memory memory = {};
 };
 
 /// One instance of a scene that Scene::assemble() makes.
@@ -135,8 +137,9 @@ class BOXTREE_API Scene {
   /// Costs O(n log n), no tree is read; allocates 1 KB for each tree and each instance.
   /// Errors, which name the instance: kTreeIndex, kInvalidPose, kInvalidQuery (a layer beyond 31, a
   /// name too long), kMeshTooLarge (too many instances, materials or bytes of names).
+  /// `memory`: of all that the Scene owns.
   static Result<Scene> assemble(std::span<const Tree> trees, std::span<const PlacedTree> instances,
-                                std::span<const SceneLayer> layers = {});
+                                std::span<const SceneLayer> layers = {}, const Memory& memory = {});
 
   /// Takes the scene over.
   Scene(Scene&&) noexcept;
@@ -201,9 +204,12 @@ class BOXTREE_API Scene {
 
  private:
   friend class BoundScene;
-  explicit Scene(std::unique_ptr<BoundScene> bound) noexcept;
+  struct Ends {  // to where its memory came from
+    void operator()(BoundScene* bound) const noexcept;
+  };
+  explicit Scene(std::unique_ptr<BoundScene, Ends> bound) noexcept;
 
-  std::unique_ptr<BoundScene> bound_;
+  std::unique_ptr<BoundScene, Ends> bound_;
 };
 
 /// Receives one face after the other; returns whether to go on.

@@ -189,5 +189,26 @@ TEST(CLibrary, MessagesWithoutADetailHaveTheMeaning) {
             std::string("work_limit: ") + bxt_error_meaning(BXT_WORK_LIMIT));
 }
 
+// As Error::message() does; a pointer that is NULL is another matter than a value.
+TEST(CLibrary, MessagesSayWhatAQueryExpects) {
+  const std::vector<std::byte> bytes = test::cook_bytes(test::torus(5, 4), CodecId::kWide8);
+  const test::CFile file = test::open_c(bytes);
+  const test::CTree tree = test::bind_c(file);
+  bxt_closest_point answer = {};
+  answer.struct_size = sizeof answer;
+  bxt_error error = {};
+  error.struct_size = sizeof error;
+  const bxt_vec3 point = {NAN, 0, 0};
+  EXPECT_EQ(bxt_tree_closest_point(tree.get(), &point, 1, nullptr, &answer, &error),
+            BXT_INVALID_QUERY);
+  EXPECT_STREQ(error.message,
+               "invalid_query: point: expected a finite point, at most 2^185 mesh extents away");
+  EXPECT_EQ(error.message_length, std::strlen(error.message));
+  EXPECT_EQ(bxt_tree_closest_point(tree.get(), nullptr, 1, nullptr, &answer, &error),
+            BXT_INVALID_QUERY);
+  EXPECT_STREQ(error.message, "invalid_query: point is NULL");
+  EXPECT_EQ(error.message_length, std::strlen(error.message));
+}
+
 }  // namespace
 }  // namespace boxtree

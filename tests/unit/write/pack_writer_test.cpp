@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <new>
 #include <random>
 #include <sstream>
 #include <string>
@@ -112,6 +113,29 @@ TEST(Pack, HoldsItsFilesAsTheyWere) {
     EXPECT_EQ(member->tree, places[i].second);
   }
   EXPECT_EQ(file->member(6).code(), Errc::kTreeIndex);
+}
+
+TEST(Pack, MembersTakeTheMemoryOfTheirFile) {
+  const FileBytes bytes = pack_three();
+  int living = 0;
+  const Memory memory = {&living,
+                         [](void* count, std::size_t size, std::size_t alignment) {
+                           ++*static_cast<int*>(count);
+                           return ::operator new(size, std::align_val_t(alignment));
+                         },
+                         [](void* count, void* place, std::size_t, std::size_t alignment) {
+                           --*static_cast<int*>(count);
+                           ::operator delete(place, std::align_val_t(alignment));
+                         }};
+  {
+    const File packed = require(File::open(Bytes(bytes), {.memory = memory}));
+    EXPECT_EQ(living, 2);  // its inside, its section table
+    const Member member = require(packed.member(0));
+    EXPECT_EQ(living, 4);
+    const Member again = require(member.file.member(member.tree));
+    EXPECT_EQ(living, 6);
+  }
+  EXPECT_EQ(living, 0);
 }
 
 TEST(Pack, TreesAnswerAsThoseOfTheirFiles) {
