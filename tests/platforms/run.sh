@@ -62,6 +62,7 @@ cook torus "$here/torus.obj" --exact --codec wide8
 cook torus-grid "$here/torus.obj" --grid-bits 16 --codec wide4
 cook torus-arrays "$here/torus.obj" --exact --for speed --codec wide8
 cook torus-f64 "$here/torus.obj" --f64 --exact --for speed --codec wide4
+cook torus-f64-clusters "$here/torus.obj" --f64 --exact --for memory --codec wide8
 cook crate "$source/samples/meshes/crate.obj" --active-edges 30 --materials
 cook courtyard "$source/samples/level/level.gltf"
 
