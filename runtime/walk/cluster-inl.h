@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Decodes full leaves from clusters, by vectors of eight lanes that can be permuted (of four for
 // numbers of 64 bits, vertex by vertex): the same numbers as decode_cluster_leaf
-// (format/cluster.cpp), which decodes any leaf, and all of them where vectors are shorter.
+// (format/cluster.cpp), which decodes any leaf; tree/plain_cluster.h does where vectors are
+// shorter.
 #if defined(BOXTREE_RUNTIME_WALK_CLUSTER_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_CLUSTER_INL_H
 #undef BOXTREE_RUNTIME_WALK_CLUSTER_INL_H
@@ -13,9 +14,9 @@
 
 #include "format/cluster_leaf.h"
 #include "runtime/tree/frame.h"
+#include "runtime/tree/leaf_fields.h"
 #include "runtime/walk/cluster_avx512.h"
 #include "runtime/walk/cluster_groups-inl.h"
-#include "runtime/walk/leaf_fields.h"
 #include "runtime/walk/strip-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -558,11 +559,7 @@ class ClusterReader {
                  LeafTriangles::kFourths, group[3]);
     }
     if (!are_read || !hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())))) return false;
-    if (faces.quads != 0) {
-      name_lanes(faces.quads, triangles);
-    } else {
-      triangles.count = kLeafFaces;
-    }
+    triangles.name_lanes(faces.quads);
     const FaceCorners corners(triangles);
     for (std::size_t k = 0; k < 3; ++k) {
       const FloatVector of_axis[4] = {group[0][k], group[1][k], group[has_more ? 2 : 1][k],
@@ -570,19 +567,6 @@ class ClusterReader {
       corners.spread(of_axis, out[0][k], out[1][k], out[2][k]);
     }
     return true;
-  }
-
-  // The face and the half of each lane.
-  static HWY_INLINE void name_lanes(std::uint32_t quads, LeafTriangles& triangles) {
-    std::uint32_t count = 0;
-    HWY_UNROLL(1)
-    for (std::uint32_t half = 0; half < 2 * kLeafFaces; ++half) {
-      // Written over by the next one where there is no such half; then zeros.
-      triangles.code[count] = static_cast<std::uint8_t>(half);
-      count += half % 2 == 0 || ((quads >> half / 2) & 1u) != 0 ? 1 : 0;
-    }
-    triangles.count = count;
-    std::fill(triangles.code + count, std::end(triangles.code), std::uint8_t{0});
   }
 
   const ClusterView& view_;

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "format/cluster.h"
-#include "runtime/walk/leaf_fields.h"
+#include "runtime/tree/leaf_fields.h"
 
 namespace boxtree {
 

@@ -7,7 +7,7 @@
 #define BOXTREE_RUNTIME_WALK_CLUSTER_GROUPS_INL_H
 #endif
 
-#include "runtime/walk/leaf_fields.h"
+#include "runtime/tree/leaf_fields.h"
 #include "runtime/walk/word_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -12,6 +12,7 @@
 
 #include "runtime/primitive/rounding.h"
 #include "runtime/tree/bound_tree.h"
+#include "runtime/tree/plain_cluster.h"
 #include "runtime/walk/cluster-inl.h"
 #include "runtime/walk/decode-inl.h"
 #include "runtime/walk/traversal.h"
@@ -19,6 +20,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR  // without vectors the generic walks are used
+
+// Whether leaves of clusters are read as floats. Where a build has vectors of eight numbers, too,
+// few machines walk by shorter ones, and LeafReader reads them, for size.
+#undef BOXTREE_READS_CLUSTERS
+#if BOXTREE_HAS_EIGHT_LANES || (HWY_TARGETS & (HWY_AVX2 | HWY_AVX3)) == 0
+#define BOXTREE_READS_CLUSTERS 1
+#else
+#define BOXTREE_READS_CLUSTERS 0
+#endif
+#if BOXTREE_HAS_EIGHT_LANES
+using LeafClusters = ClusterReader;
+#else
+using LeafClusters = PlainClusterReader;
+#endif
 
 /// Reads leaves of one tree. Coordinates are the exact ones or those rounded to nearest, see
 /// corner_error(). Exact triangles come from with_triangle().
@@ -29,7 +44,7 @@ class LeafFloats {
         mesh_(reader_.mesh()),
         floats_(reader_.floats()),
         lane_code_{0, 2, 4, 6, 8, 10, 12, 14}
-#if BOXTREE_HAS_EIGHT_LANES
+#if BOXTREE_READS_CLUSTERS
         ,
         clusters_(reader_.clusters(), reader_.frame(), doubles_)
 #endif
@@ -189,7 +204,7 @@ class LeafFloats {
  private:
   struct Leaf {
     HWY_ALIGN LeafCoordinates coordinate;
-#if BOXTREE_HAS_EIGHT_LANES
+#if BOXTREE_READS_CLUSTERS
     LeafTriangles triangles;  // of a cluster
 #endif
   };
@@ -244,6 +259,8 @@ class LeafFloats {
   HWY_NOINLINE bool exact_triangle(std::uint32_t lane, Triangle& triangle) {
 #if BOXTREE_HAS_EIGHT_LANES
     if (!reader_.has_clusters() && !floats_.is_f64) return exact_triangle_of_arrays(lane, triangle);
+#endif
+#if BOXTREE_READS_CLUSTERS
     if (reader_.has_clusters() && floats_.is_f64) {
       std::uint32_t references[3];
       leaf_->triangles.find_corners(lane, references);
@@ -275,7 +292,7 @@ class LeafFloats {
 
   HWY_INLINE bool gather() {
     if (reader_.has_clusters()) {
-#if BOXTREE_HAS_EIGHT_LANES
+#if BOXTREE_READS_CLUSTERS
       return gather_cluster();
 #else
       return false;
@@ -290,7 +307,7 @@ class LeafFloats {
     return true;
   }
 
-#if BOXTREE_HAS_EIGHT_LANES
+#if BOXTREE_READS_CLUSTERS
   HWY_INLINE bool gather_cluster() {
     if (!clusters_.read(first_ / kLeafFaces, floats_.scale, leaf_->triangles, leaf_->coordinate)) {
       return false;
@@ -303,7 +320,7 @@ class LeafFloats {
 
   // See LeafTriangles, of a leaf that was gathered.
   [[nodiscard]] HWY_INLINE std::uint32_t face_and_half(std::uint32_t lane) const {
-#if BOXTREE_HAS_EIGHT_LANES
+#if BOXTREE_READS_CLUSTERS
     if (reader_.has_clusters()) return leaf_->triangles.face_and_half(lane);
 #endif
     return lane_code_[lane];
@@ -311,7 +328,7 @@ class LeafFloats {
 
   // [corner][axis], as they are stored.
   HWY_INLINE void read_corners(std::uint32_t lane, double (&out)[3][3]) const {
-#if BOXTREE_HAS_EIGHT_LANES
+#if BOXTREE_READS_CLUSTERS
     if (reader_.has_clusters())
       return leaf_->triangles.read_corners(lane, reader_.clusters().numbers, out);
 #endif
@@ -486,9 +503,11 @@ class LeafFloats {
   // Of each lane of arrays: see LeafTriangles::face_and_half().
   std::uint8_t lane_code_[kMaxLeafTriangles];
   TriangleBatch batch_;
-#if BOXTREE_HAS_EIGHT_LANES
+#if BOXTREE_READS_CLUSTERS
   HWY_ALIGN DoublePositions doubles_;  // of the current leaf of a cluster
-  ClusterReader clusters_;
+  LeafClusters clusters_;
+#endif
+#if BOXTREE_HAS_EIGHT_LANES
   std::uint32_t ahead_ = kNoLeaf;  // the leaf that was read ahead, which is in the other one
   Leaf leaves_[2];
 #else

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Whole leaves by vectors, in every instruction set, against LeafReader, which reads them number by
-// number: the same triangles to the bit, of every store, and the same errors of corrupt bytes.
+// Whole leaves by vectors, in every instruction set, and by LeafReader, which reads them number by
+// number, against leaves in parts, which decode_cluster_leaf decodes: the same triangles to the
+// bit, of every store, and the same errors of corrupt bytes.
 #include "runtime/walk/read_leaf.h"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <random>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -35,7 +37,24 @@ std::vector<std::uint64_t> content_of(const TriangleBatch& batch) {
   return content;
 }
 
-// Reads every leaf both ways. Returns how many were read without an error.
+// The triangles of a leaf in two parts, which no reader of whole leaves reads, and the first error.
+std::pair<Errc, std::vector<std::uint64_t>> read_in_parts(const LeafReader& leaves, NodeRef leaf) {
+  std::vector<std::uint64_t> content;
+  TriangleBatch part;
+  const std::uint32_t first_count = leaf.second / 2;
+  for (const auto& [first, count] :
+       {std::pair(leaf.first, first_count),
+        std::pair(leaf.first + first_count, leaf.second - first_count)}) {
+    if (count == 0) continue;
+    const Errc error = leaves.read(first, count, part);
+    if (error != Errc::kOk) return {error, {}};
+    const std::vector<std::uint64_t> more = content_of(part);
+    content.insert(content.end(), more.begin(), more.end());
+  }
+  return {Errc::kOk, content};
+}
+
+// Reads every leaf in all ways. Returns how many were read without an error.
 std::uint32_t compare_leaves(const Tree& bound, const char* name) {
   const BoundTree& tree = BoundTree::of(bound);
   const std::uint32_t faces = tree.leaves().mesh().face_count;
@@ -45,7 +64,10 @@ std::uint32_t compare_leaves(const Tree& bound, const char* name) {
     const NodeRef leaf{first, std::min(kLeafFaces, faces - first)};
     const Errc error = tree.leaves().read(leaf.first, leaf.second, expected);
     EXPECT_EQ(read_leaf(tree, leaf, actual), error) << name << ", leaf at " << first;
+    const auto [error_of_parts, parts] = read_in_parts(tree.leaves(), leaf);
+    EXPECT_EQ(error_of_parts, error) << name << ", leaf at " << first;
     if (error != Errc::kOk) continue;
+    EXPECT_EQ(parts, content_of(expected)) << name << ", leaf at " << first;
     EXPECT_EQ(content_of(actual), content_of(expected)) << name << ", leaf at " << first;
     ++read;
   }

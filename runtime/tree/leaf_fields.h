@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What readers by vectors keep of a cluster, and the fields of its leaves that no vectors are
+// What readers of full leaves keep of a cluster, and the fields of its leaves that no vectors are
 // needed for: the same as find_leaf and decode_cluster_leaf (format/cluster.cpp).
 #pragma once
 
@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 #include "format/bytes.h"
 #include "format/cluster_leaf.h"
@@ -132,6 +133,19 @@ struct LeafTriangles {
   // corners of quads.
   alignas(64) std::uint32_t number[3][kMostLeafReferences];
 
+  /// The face and the half of each lane. `quads`: bit f is set if face f is one.
+  BOXTREE_ALWAYS_INLINE void name_lanes(std::uint32_t quads) noexcept {
+    count = kLeafFaces;
+    if (quads == 0) return;
+    count = 0;
+    for (std::uint32_t half = 0; half < 2 * kLeafFaces; ++half) {
+      // Written over by the next one where there is no such half; then zeros.
+      code[count] = static_cast<std::uint8_t>(half);
+      count += half % 2 == 0 || ((quads >> half / 2) & 1u) != 0 ? 1 : 0;
+    }
+    std::fill(code + count, std::end(code), std::uint8_t{0});
+  }
+
   /// Twice the face of a lane, and 1 more for the second triangle of a quad.
   [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t face_and_half(
       std::uint32_t lane) const noexcept {
@@ -161,14 +175,17 @@ struct LeafTriangles {
                                           double (&out)[3][3]) const {
     std::uint32_t references[3];
     find_corners(lane, references);
-    const bool is_grid = numbers == ClusterNumbers::kGrid;
     for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t n = number[k][references[c]];
-        out[c][k] = is_grid ? static_cast<double>(static_cast<std::int32_t>(n))
-                            : static_cast<double>(std::bit_cast<float>(n));
-      }
+      for (std::size_t k = 0; k < 3; ++k) out[c][k] = stored(references[c], k, numbers);
     }
+  }
+
+  /// A coordinate of a reference: in steps of the grid, or the float of the source.
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE double stored(std::uint32_t reference, std::size_t axis,
+                                                    ClusterNumbers numbers) const noexcept {
+    const std::uint32_t n = number[axis][reference];
+    return numbers == ClusterNumbers::kGrid ? static_cast<double>(static_cast<std::int32_t>(n))
+                                            : static_cast<double>(std::bit_cast<float>(n));
   }
 };
 
