@@ -41,6 +41,9 @@ int run(Arguments& arguments) {
   if (is_standard_stream(options.jobs)) {
     return usage("tile: -o names the manifest, beside which the tiles are: - has no place");
   }
+  if (const std::string fault = mesh_name_fault(options.jobs, ".jsonl"); !fault.empty()) {
+    return usage("tile: " + fault);
+  }
   if (options.folder.empty()) {
     options.folder = options.jobs;
     options.folder.replace_extension();
@@ -63,10 +66,14 @@ int run(Arguments& arguments) {
       tile_world(options, [&](const std::string& text) { step("tile: " + text); });
   step.clear();
   if (!report) return fail(report.error());
+  if (report->skipped > 0) {
+    warn(fmt::format("{} left out by --skip-bad", counted(report->skipped, "bad face")));
+  }
   if (arguments.json) {
     print(Json{{"output", options.jobs.string()},
                {"folder", options.folder.string()},
                {"faces", report->faces},
+               {"skipped", report->skipped},
                {"triangles", report->triangles},
                {"tiles", report->tiles},
                {"written", report->written},
@@ -120,6 +127,9 @@ void add_tile_command(Command& program, int& status) {
                   "Tiles are cooked with this --grid-step, which they have in common [else with "
                   "--exact; other options can be added to the lines of the manifest]")
       ->type_name("2^E");
+  command.add_flag("--skip-bad", options.skip_bad,
+                   "Leave out faces with NaN, infinite or missing vertices; the others keep their "
+                   "numbers");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.example("Tiles of at most 1000 triangles",

@@ -33,11 +33,17 @@ FaceFault vertex_not_finite(const std::string& vertex, const std::array<double, 
                                             position[1], position[2])};
 }
 
+Error error_of_face(const std::string& file, std::uint64_t face, const FaceFault& fault,
+                    const char* skips_bad) {
+  const std::string remedy =
+      skips_bad == nullptr ? "" : fmt::format(" ({} --skip-bad drops such faces)", skips_bad);
+  return {fault.code, fmt::format("{}: face {}: {}{}", file, face, fault.reason, remedy)};
+}
+
 Status report_fault(FaceFault fault, std::uint32_t face_id, const std::string& file,
                     const ImportOptions& options, ImportReport& report) {
   if (!options.skip_bad) {
-    return Error{fault.code, fmt::format("{}: face {}: {} (cook --skip-bad drops such faces)", file,
-                                         face_id, fault.reason)};
+    return error_of_face(file, face_id, fault, options.skips_bad);
   }
   report.skipped.push_back({face_id, std::move(fault.reason)});
   return {};

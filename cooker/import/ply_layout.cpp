@@ -106,7 +106,10 @@ Status find_ply_parts(PlyLayout& layout) {
     return element != nullptr && element->count > 0;
   };
   if (!has_any(layout.face) && !has_any(layout.tristrips)) {
-    return Error{Errc::kNoFaces, "no faces: the header states neither 'face' nor 'tristrips'"};
+    const bool has_element = layout.face != nullptr || layout.tristrips != nullptr;
+    return Error{Errc::kNoFaces,
+                 has_element ? "no faces: the header counts 0"
+                             : "no faces: the header states neither 'face' nor 'tristrips'"};
   }
   if (layout.vertex == nullptr) return failure("no element 'vertex'");
   for (const PlyElement* faces : {layout.face, layout.tristrips}) {

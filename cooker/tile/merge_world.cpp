@@ -2,8 +2,10 @@
 // Records and section tables say where everything lies before a section is copied.
 #include "cooker/tile/merge_world.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "cooker/encode/encoded_scene.h"
 #include "cooker/import/file_error.h"
 #include "cooker/proof/scene_proof.h"
+#include "cooker/tile/number_set.h"
 #include "cooker/write/atomic_file.h"
 #include "format/container.h"
 #include "format/limits.h"
@@ -22,6 +25,7 @@
 #include "runtime/file/mapping.h"
 #include "runtime/file/open_file.h"
 #include "runtime/primitive/float_state.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -85,6 +89,7 @@ class Merge {
     }
     for (std::uint32_t tree = 0; tree < opened->tree_count(); ++tree) {
       if (Status status = add_tree(path, file, tree); !status) return status;
+      if (Status status = add_numbers(path, *opened, tree); !status) return status;
     }
     for (const SectionEntry& section : file.container().sections) {
       if (section.owner == kNoOwner) continue;
@@ -126,6 +131,24 @@ class Merge {
     report_.trees += 1;
     report_.faces += record.face_count;
     report_.triangles += record.triangle_count;
+    return {};
+  }
+
+  // Queries settle ties by the numbers of faces: no two may have the same.
+  Status add_numbers(const fs::path& path, const File& file, std::uint32_t number) {
+    const Result<Tree> tree = Tree::bind(file, number);
+    if (!tree) return in_file(path, tree.error());
+    const std::uint32_t faces = records_.back().face_count;
+    std::array<std::uint32_t, kLeafFaces> ids;
+    for (std::uint32_t first = 0; first < faces; first += kLeafFaces) {
+      BoundTree::of(*tree).read_leaf_ids(first / kLeafFaces, ids);
+      for (const std::uint32_t id : std::span(ids).first(std::min(faces - first, kLeafFaces))) {
+        if (numbers_.insert(id)) continue;
+        return unfit(path, fmt::format("there is another face {} before this one; name each tile "
+                                       "of one world once",
+                                       id));
+      }
+    }
     return {};
   }
 
@@ -236,6 +259,7 @@ class Merge {
   TreeRecord first_{};
   std::vector<EncodedTree> trees_;  // what a scene needs of them
   std::string names_;
+  NumberSet numbers_;  // of faces
   EncodedScene scene_;
   std::vector<MergedSection> sections_, of_trees_;
   std::uint64_t at_ = 0;  // bytes written

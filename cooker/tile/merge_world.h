@@ -28,12 +28,13 @@ struct MergeReport {
 /// and committed to `to`: on any error before, the old file is unchanged. Trees were proven when
 /// they were cooked.
 ///
-/// Files are read one by one, twice; memory is that of records and of the section table.
+/// Files are read one by one, twice; memory is that of records, of the section table and of a bit
+/// for each face number.
 ///
 /// Errors: those of `open`; kMeshUnsupported, with the file, for one with a scene, with materials,
-/// with external geometry or without face ids, for a tree without faces, and for positions on
-/// another grid than those of the first file; kMeshTooLarge for more than kMaxTrees trees;
-/// kFileUnreadable if a file changes meanwhile; kWriteFailed.
+/// with external geometry or without face ids, for a tree without faces, for a face number that
+/// a file before has, and for positions on another grid than those of the first file; kMeshTooLarge
+/// for more than kMaxTrees trees; kFileUnreadable if a file changes meanwhile; kWriteFailed.
 Result<MergeReport> merge_world(const OutputTarget& to,
                                 std::span<const std::filesystem::path> files, const OpenInput& open,
                                 const Progress& progress = {});

@@ -170,11 +170,12 @@ class World {
   template <class Visit>
   Status read(const std::string& step, const Visit& visit) {
     ++report_.readings;
-    std::uint64_t first = 0;
+    std::uint64_t first = 0, skipped = 0;
     for (const fs::path& source : options_.sources) {
       announce(progress_, fmt::format("{} {}", step, source.filename().string()));
-      const Result<std::uint32_t> count =
-          read_world_faces(source, options_.memory / 2, [&](const WorldFace& face) -> Status {
+      const WorldReading reading{options_.memory / 2, options_.skip_bad};
+      const Result<WorldFaces> found =
+          read_world_faces(source, reading, [&](const WorldFace& face) -> Status {
             const std::uint64_t id = first + face.id;
             if (Status status = check_face_count(id + 1, source.string()); !status) return status;
             if (face.corners.size() > kMostCorners) {
@@ -186,9 +187,11 @@ class World {
             return visit(WorldFace{static_cast<std::uint32_t>(id), face.corners, face.of_all_parts},
                          std::uint64_t{face.corners.size() - 2});
           });
-      if (!count) return count.error();
-      first += *count;
+      if (!found) return found.error();
+      first += found->numbers;
+      skipped += found->skipped;
     }
+    report_.skipped = skipped;
     return {};
   }
 

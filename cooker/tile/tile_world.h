@@ -23,11 +23,13 @@ struct TileOptions {
   std::filesystem::path folder;  // of the tiles, which is made; cooked files go beside them
   std::uint64_t triangles_per_tile = 1'000'000;
   std::uint64_t memory = std::uint64_t{1} << 30;  // [bytes] beside that of the program
+  bool skip_bad = false;                          // leave bad faces out; others keep their numbers
   std::vector<std::string> cook_options;          // of each job, but --face-ids
 };
 
 struct TileReport {
   std::uint64_t faces = 0;
+  std::uint64_t skipped = 0;  // bad ones
   std::uint64_t triangles = 0;
   std::uint64_t tiles = 0;
   std::uint64_t written = 0;   // of these; the others were there with the same bytes

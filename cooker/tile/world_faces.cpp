@@ -31,9 +31,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error of_face(const std::string& file, std::uint64_t face, const FaceFault& fault) {
-  return {fault.code, fmt::format("{}: face {}: {}", file, face, fault.reason)};
-}
+// Bad faces: errors, or counted and left out.
+class BadFaces {
+ public:
+  BadFaces(const std::string& file, bool skips) : file_(file), skips_(skips) {}
+
+  Status take(std::uint64_t face, const FaceFault& fault) {
+    if (!skips_) return error_of_face(file_, face, fault, "tile");
+    ++count_;
+    return {};
+  }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+
+ private:
+  const std::string& file_;
+  bool skips_;
+  std::uint32_t count_ = 0;
+};
 
 bool is_finite(const WorldCorner& corner) {
   return std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
@@ -43,8 +57,8 @@ std::array<double, 3> in_double(const WorldCorner& corner) {
   return {double{corner[0]}, double{corner[1]}, double{corner[2]}};
 }
 
-Result<std::uint32_t> read_stl(SourceStream& stream, const std::string& file,
-                               const WorldFaceSink& sink) {
+Result<WorldFaces> read_stl(SourceStream& stream, const std::string& file, BadFaces& bad,
+                            const WorldFaceSink& sink) {
   constexpr std::size_t kTriangleBytes = 50, kNormalBytes = 12;
   static_cast<void>(stream.take(kStlHeaderBytes));
   const std::uint64_t count = stream.left() / kTriangleBytes;  // is_binary_stl has compared it
@@ -58,14 +72,18 @@ Result<std::uint32_t> read_stl(SourceStream& stream, const std::string& file,
           static_cast<float>(load_ply_value(triangle + kNormalBytes + 4 * i, PlyType::kFloat32,
                                             std::endian::native != std::endian::little));
     }
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (is_finite(corners[i])) continue;
-      const std::string name = fmt::format("vertex {}", std::uint64_t{3} * id + i);
-      return of_face(file, id, vertex_not_finite(name, in_double(corners[i])));
+    const auto found = std::find_if_not(corners.begin(), corners.end(), is_finite);
+    Status status;
+    if (found == corners.end()) {
+      status = sink({id, corners, corners});
+    } else {
+      const auto vertex =
+          std::uint64_t{3} * id + static_cast<std::uint64_t>(found - corners.begin());
+      status = bad.take(id, vertex_not_finite(fmt::format("vertex {}", vertex), in_double(*found)));
     }
-    if (Status status = sink({id, corners, corners}); !status) return status.error();
+    if (!status) return status.error();
   }
-  return static_cast<std::uint32_t>(count);
+  return WorldFaces{static_cast<std::uint32_t>(count), bad.count()};
 }
 
 // Bytes of an element without lists.
@@ -195,46 +213,54 @@ class VertexBlocks {
 class PlyFaces {
  public:
   PlyFaces(SourceStream& stream, const PlyLayout& layout, const std::string& file,
-           VertexBlocks& vertices, const WorldFaceSink& sink)
+           VertexBlocks& vertices, BadFaces& bad, const WorldFaceSink& sink)
       : stream_(stream),
         layout_(layout),
         swapped_((layout.header.form == PlyHeader::Form::kBigEndian) ==
                  (std::endian::native == std::endian::little)),
         file_(file),
         vertices_(vertices),
+        bad_(bad),
         sink_(sink) {}
 
-  Result<std::uint32_t> read() {
+  Result<WorldFaces> read() {
     if (Status status = check_face_count(layout_.face->count, file_); !status) {
       return status.error();
     }
     for (std::uint64_t i = 0; i < layout_.face->count; ++i) {
       if (Status status = read_record(i); !status) return status.error();
       if (numbers_.size() < 3) continue;
-      corners_.clear();
-      for (const std::uint32_t vertex : numbers_) {
-        if (vertex >= layout_.vertex->count) {
-          return of_face(
-              file_, next_id_,
-              vertex_out_of_range(corners_.size(), vertex_text(vertex), layout_.vertex->count));
-        }
-        const Result<WorldCorner> corner = vertices_[vertex];
-        if (!corner) return corner.error();
-        if (!is_finite(*corner)) {
-          return of_face(file_, next_id_,
-                         vertex_not_finite(vertex_text(vertex), in_double(*corner)));
-        }
-        corners_.push_back(*corner);
-      }
-      if (Status status = sink_({next_id_, corners_, corners_}); !status) return status.error();
+      const Result<std::optional<FaceFault>> fault = find_corners();
+      if (!fault) return fault.error();
+      const Status status =
+          *fault ? bad_.take(next_id_, **fault) : sink_({next_id_, corners_, corners_});
+      if (!status) return status.error();
       ++next_id_;
     }
-    return next_id_;
+    return WorldFaces{next_id_, bad_.count()};
   }
 
  private:
   [[nodiscard]] Error ended_in(std::uint64_t face) const {
     return stream_.ended_in(fmt::format("face {} of {}", face, layout_.face->count));
+  }
+
+  // The positions of a record's vertices, or what is wrong with one of them.
+  Result<std::optional<FaceFault>> find_corners() {
+    corners_.clear();
+    for (const std::uint32_t vertex : numbers_) {
+      if (vertex >= layout_.vertex->count) {
+        return std::optional(
+            vertex_out_of_range(corners_.size(), vertex_text(vertex), layout_.vertex->count));
+      }
+      const Result<WorldCorner> corner = vertices_[vertex];
+      if (!corner) return corner.error();
+      if (!is_finite(*corner)) {
+        return std::optional(vertex_not_finite(vertex_text(vertex), in_double(*corner)));
+      }
+      corners_.push_back(*corner);
+    }
+    return std::optional<FaceFault>();
   }
 
   Status read_record(std::uint64_t face) {
@@ -267,6 +293,7 @@ class PlyFaces {
   const bool swapped_;
   const std::string& file_;
   VertexBlocks& vertices_;
+  BadFaces& bad_;
   const WorldFaceSink& sink_;
   std::vector<std::uint32_t> numbers_;  // of the vertices of a face
   std::vector<WorldCorner> corners_;
@@ -274,8 +301,8 @@ class PlyFaces {
 };
 
 // Precondition: is_streamable(layout).
-Result<std::uint32_t> read_ply(SourceStream& stream, const PlyLayout& layout, const fs::path& path,
-                               std::uint64_t memory, const WorldFaceSink& sink) {
+Result<WorldFaces> read_ply(SourceStream& stream, const PlyLayout& layout, const fs::path& path,
+                            std::uint64_t memory, BadFaces& bad, const WorldFaceSink& sink) {
   const std::string file = path.string();
   const std::uint64_t all = stream.left();
   std::uint64_t at = layout.header.bytes, vertices_at = 0;
@@ -298,21 +325,22 @@ Result<std::uint32_t> read_ply(SourceStream& stream, const PlyLayout& layout, co
   if (!handle) return input_failure(file, errno);
   VertexBlocks vertices(layout, vertices_at, std::move(handle), file, memory);
   if (!stream.skip(at)) return stream.ended_in("its vertices");
-  return PlyFaces(stream, layout, file, vertices, sink).read();
+  return PlyFaces(stream, layout, file, vertices, bad, sink).read();
 }
 
-Result<std::uint32_t> read_imported(const fs::path& path, std::uint64_t memory,
-                                    const WorldFaceSink& sink) {
+Result<WorldFaces> read_imported(const fs::path& path, const WorldReading& reading,
+                                 const WorldFaceSink& sink) {
   CookJob job;
   job.inputs = {path};
-  if (const std::uint64_t expected = estimated_memory(job); expected > memory) {
+  if (const std::uint64_t expected = estimated_memory(job); expected > reading.memory) {
     return Error{Errc::kMeshUnsupported,
                  fmt::format("{}: it is read into memory and takes about {} bytes, {} are allowed; "
                              "binary PLY and STL files are read as streams: convert it, or give "
                              "more --memory",
-                             path.string(), expected, memory)};
+                             path.string(), expected, reading.memory)};
   }
-  const Result<Imported> imported = import_mesh(path, {.try_first = true});
+  const Result<Imported> imported =
+      import_mesh(path, {.skip_bad = reading.skip_bad, .skips_bad = "tile", .try_first = true});
   if (!imported) return imported.error();
   const SourceMesh& mesh = imported->mesh;
   std::vector<WorldCorner> corners;  // of all parts of a polygon
@@ -336,28 +364,31 @@ Result<std::uint32_t> read_imported(const fs::path& path, std::uint64_t memory,
       begin = end;
     }
   }
-  return static_cast<std::uint32_t>(imported->report.source_faces);
+  return WorldFaces{static_cast<std::uint32_t>(imported->report.source_faces),
+                    static_cast<std::uint32_t>(imported->report.skipped.size())};
 }
 
 }  // namespace
 
-Result<std::uint32_t> read_world_faces(const fs::path& path, std::uint64_t memory,
-                                       const WorldFaceSink& sink) {
+Result<WorldFaces> read_world_faces(const fs::path& path, const WorldReading& reading,
+                                    const WorldFaceSink& sink) {
   const bool is_stl = has_extension(path, "stl"), is_ply = has_extension(path, "ply");
-  if (!is_stl && !is_ply) return read_imported(path, memory, sink);
+  if (!is_stl && !is_ply) return read_imported(path, reading, sink);
   Result<SourceStream> stream = SourceStream::open(SourceFile(path));
   if (!stream) return stream.error();
+  const std::string file = path.string();
+  BadFaces bad(file, reading.skip_bad);
   if (is_stl) {
-    return is_binary_stl(*stream) ? read_stl(*stream, path.string(), sink)
-                                  : read_imported(path, memory, sink);
+    return is_binary_stl(*stream) ? read_stl(*stream, file, bad, sink)
+                                  : read_imported(path, reading, sink);
   }
   Result<PlyHeader> header = read_ply_header(stream->ahead());
   if (!header) return in_file(path, header.error());
   PlyLayout layout;
   layout.header = std::move(*header);
   if (Status status = find_ply_parts(layout); !status) return in_file(path, status.error());
-  if (!is_streamable(layout)) return read_imported(path, memory, sink);
-  return read_ply(*stream, layout, path, memory, sink);
+  if (!is_streamable(layout)) return read_imported(path, reading, sink);
+  return read_ply(*stream, layout, path, reading.memory, bad, sink);
 }
 
 }  // namespace boxtree::cooker

@@ -25,18 +25,31 @@ struct WorldFace {
 /// Takes one face after the other; an error ends the reading.
 using WorldFaceSink = std::function<Status(const WorldFace&)>;
 
-/// Passes each face of a mesh file to `sink` and returns how many numbers they have. Corners have
-/// the bits that import_mesh gives them in f32.
+/// How a source is read.
+struct WorldReading {
+  std::uint64_t memory = 0;  ///< [bytes] The most that it takes.
+  bool skip_bad =
+      false;  ///< Leaves out faces that import_mesh calls bad; others keep their numbers.
+};
+
+/// What a source had.
+struct WorldFaces {
+  std::uint32_t numbers = 0;  ///< of faces, those that were skipped included
+  std::uint32_t skipped = 0;
+};
+
+/// Passes each face of a mesh file to `sink`. Corners have the bits that import_mesh gives them in
+/// f32.
 ///
 /// Binary STL and PLY are read from front to back: their faces are never in memory, and of a PLY
-/// file as many vertices as `memory` bytes hold, in blocks; a file whose faces name vertices all
+/// file as many vertices as so much memory holds, in blocks; a file whose faces name vertices all
 /// over it is read at the speed of its disk. Other files, and PLY files with strips or with lists
 /// before their faces, are imported.
 ///
 /// Errors: those of import_mesh; kMeshUnsupported for a file that has to be imported and is
-/// expected to take more than `memory`, and for a PLY file with doubles that f32 does not hold, as
+/// expected to take more memory, and for a PLY file with doubles that f32 does not hold, as
 /// a cook with --exact would keep them.
-Result<std::uint32_t> read_world_faces(const std::filesystem::path& path, std::uint64_t memory,
-                                       const WorldFaceSink& sink);
+Result<WorldFaces> read_world_faces(const std::filesystem::path& path, const WorldReading& reading,
+                                    const WorldFaceSink& sink);
 
 }  // namespace boxtree::cooker

@@ -239,8 +239,8 @@ TEST_F(GltfTypes, SkinsWeightsAndScenesThatAreNotRead) {
   const std::vector<Unread> of_scenes = load("a.gltf", text).report.unread;
   ASSERT_EQ(of_scenes.size(), 1u);
   EXPECT_EQ(of_scenes[0].what, "other scenes");
-  const auto of_text = [](const char* document) {
-    return unread_of_gltf(nlohmann::json::parse(document));
+  const auto of_text = [](const char* json) {
+    return unread_of_gltf(nlohmann::json::parse(json));
   };
   const std::vector<Unread> skins = of_text(R"({"nodes":[{"mesh":0,"skin":0},{"skin":0},7]})");
   ASSERT_EQ(skins.size(), 1u);

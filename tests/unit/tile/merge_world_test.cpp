@@ -104,6 +104,21 @@ TEST_F(MergeWorld, RefusesWhatIsNoTile) {
   EXPECT_EQ(merge({tile, folder_.path() / "absent.bxt"}).code(), Errc::kFileNotFound);
 }
 
+TEST_F(MergeWorld, RefusesAFaceThatTwoTilesHave) {
+  const fs::path tile = cook("tile", "0 1 2", "70000"), other = cook("other", "0 2 3", "70000");
+  const fs::path third = cook("third", "0 2 3", "4464");  // 70000 - 65536
+  EXPECT_TRUE(merge({tile, third}).ok());
+  for (const std::vector<fs::path>& files :
+       {std::vector{tile, third, tile}, std::vector{tile, other}}) {
+    const Result<MergeReport> report = merge(files);
+    EXPECT_EQ(report.code(), Errc::kMeshUnsupported);
+    EXPECT_EQ(report.error().detail,
+              files.back().string() +
+                  ": expected a tile as tile and cook make it: there is another face 70000 "
+                  "before this one; name each tile of one world once");
+  }
+}
+
 TEST_F(MergeWorld, RefusesTilesOfTwoGrids) {
   const fs::path coarse =
       cook("coarse", "0 1 2", "3", {"--grid-step", "2^-3", "--face-ids", "face"});

@@ -3,6 +3,7 @@
 #include "cooker/tile/world_faces.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -33,21 +34,23 @@ struct OwnFace {
   bool operator==(const OwnFace&) const = default;
 };
 
-std::vector<OwnFace> streamed(const fs::path& path, std::uint64_t memory = kAnyMemory) {
+std::vector<OwnFace> streamed(const fs::path& path, const WorldReading& reading = {kAnyMemory},
+                              std::uint32_t skipped = 0) {
   std::vector<OwnFace> faces;
-  const std::uint32_t count =
-      require(read_world_faces(path, memory, [&](const WorldFace& face) -> Status {
+  const WorldFaces found =
+      require(read_world_faces(path, reading, [&](const WorldFace& face) -> Status {
         faces.push_back({face.id, {face.corners.begin(), face.corners.end()}});
         EXPECT_FALSE(std::ranges::search(face.of_all_parts, face.corners).empty());
         return {};
       }));
-  EXPECT_EQ(count, faces.empty() ? 0 : faces.back().id + 1);
+  EXPECT_EQ(found.numbers, faces.empty() ? 0 : faces.back().id + 1);
+  EXPECT_EQ(found.skipped, skipped);
   return faces;
 }
 
 // Of triangles and planar quads, which import keeps.
-std::vector<OwnFace> imported(const fs::path& path) {
-  const Imported whole = require(import_mesh(path));
+std::vector<OwnFace> imported(const fs::path& path, const ImportOptions& options = {}) {
+  const Imported whole = require(import_mesh(path, options));
   std::vector<OwnFace> faces;
   for (std::size_t i = 0; i < whole.mesh.faces.size(); ++i) {
     OwnFace face{whole.mesh.face_id(i), {}};
@@ -130,7 +133,7 @@ TEST(WorldFaces, OfPlyAreThoseOfImport) {
     for (const char* name : {"a.ply", "b.ply", "c.ply"}) {
       const std::vector<OwnFace> expected = imported(folder.path() / name);
       EXPECT_EQ(streamed(folder.path() / name), expected) << name;
-      EXPECT_EQ(streamed(folder.path() / name, 1), expected) << name;  // two blocks of vertices
+      EXPECT_EQ(streamed(folder.path() / name, {1}), expected) << name;  // two blocks of vertices
     }
   }
 }
@@ -154,8 +157,8 @@ TEST(WorldFaces, OfOtherFilesAreImported) {
   folder.write("a.obj",
                "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 5\nf 1 2 3 4\nf 1 2 5 4\nf 1 2 3\n");
   EXPECT_EQ(streamed(folder.path() / "a.obj"), imported(folder.path() / "a.obj"));
-  const Result<std::uint32_t> refused =
-      read_world_faces(folder.path() / "a.obj", 100, [](const WorldFace&) { return Status{}; });
+  const Result<WorldFaces> refused =
+      read_world_faces(folder.path() / "a.obj", {100}, [](const WorldFace&) { return Status{}; });
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.code(), Errc::kMeshUnsupported);
   EXPECT_NE(refused.error().detail.find("--memory"), std::string::npos);
@@ -164,7 +167,7 @@ TEST(WorldFaces, OfOtherFilesAreImported) {
 Error error_of(const std::string& bytes) {
   const test::TempFolder folder;
   folder.write("a.ply", bytes);
-  const auto read = read_world_faces(folder.path() / "a.ply", kAnyMemory,
+  const auto read = read_world_faces(folder.path() / "a.ply", {kAnyMemory},
                                      [](const WorldFace&) { return Status{}; });
   EXPECT_FALSE(read.ok());
   return read.ok() ? Error{} : read.error();
@@ -179,6 +182,38 @@ std::string one_face(const char* type, auto x, std::int32_t last) {
   file.add(std::uint8_t{3});
   for (const std::int32_t corner : {0, 1, last}) file.add(corner);
   return file.text;
+}
+
+// As import drops them; the last face is a good one.
+TEST(WorldFaces, ThatAreBadMayBeSkipped) {
+  const test::TempFolder folder;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Writer stl, ply;
+  stl.text.assign(80, ' ');
+  stl.add(std::uint32_t{3});
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 12; ++k) stl.add(i == 1 && k == 7 ? nan : static_cast<float>(k * k + i));
+    stl.add(std::uint16_t{0});
+  }
+  folder.write("a.stl", stl.text);
+  ply.text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < 12; ++i) ply.add(i == 10 ? nan : static_cast<float>(i * i));
+  for (const auto& face : {std::array{0, 1, 2}, {0, 1, 3}, {0, 4, 2}, {2, 1, 0}}) {
+    ply.add(std::uint8_t{3});
+    for (const std::int32_t corner : face) ply.add(corner);
+  }
+  folder.write("a.ply", ply.text);
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n");
+  for (const auto& [name, skipped] : {std::pair("a.stl", 1u), {"a.ply", 2u}, {"a.obj", 1u}}) {
+    const fs::path path = folder.path() / name;
+    EXPECT_EQ(streamed(path, {kAnyMemory, true}, skipped), imported(path, {.skip_bad = true}));
+    const auto refused =
+        read_world_faces(path, {kAnyMemory}, [](const WorldFace&) { return Status{}; });
+    EXPECT_TRUE(refused.error().detail.ends_with(" (tile --skip-bad drops such faces)"))
+        << refused.error().detail;
+  }
 }
 
 TEST(WorldFaces, ThatAreBadAreNamed) {
