@@ -30,6 +30,7 @@
 #include "cooker/farm/keyed_cook.h"
 #include "cooker/farm/run_within.h"
 #include "cooker/import/file_error.h"
+#include "cooker/system/path.h"
 #include "cooker/system/process.h"
 #include "cooker/write/outputs.h"
 
@@ -78,10 +79,13 @@ class Counts {
       may_pass_ = may_pass_ || may_pass(line.error);
     } else {
       ++of_[static_cast<std::size_t>(line.outcome->how)];
+      audited_ += line.outcome->is_audited ? 1 : 0;
     }
   }
 
   [[nodiscard]] std::size_t done() const { return of_[0] + of_[1] + of_[2] + failed_; }
+
+  [[nodiscard]] std::size_t audited() const { return audited_; }
 
   // What an audit has found comes first: another run finds it no more. Then errors that may pass:
   // another run does their jobs.
@@ -91,7 +95,8 @@ class Counts {
     for (const int status : {kExitInternal, kExitBadInput, kExitUnsupported, kExitUsage}) {
       if (statuses_[static_cast<std::size_t>(status)]) return status;
     }
-    return 0;
+    // For a reason that stays.
+    return statuses_[kExitInputOutput] ? kExitBadInput : 0;
   }
 
   [[nodiscard]] std::string text() const {
@@ -104,6 +109,7 @@ class Counts {
  private:
   std::array<std::size_t, 3> of_{};  // by KeyedOutcome::How
   std::size_t failed_ = 0;
+  std::size_t audited_ = 0;
   std::array<bool, kExitDifference + 1> statuses_{};
   bool may_pass_ = false;
 };
@@ -134,8 +140,10 @@ class Run {
   }
 
   [[nodiscard]] std::string text() const {
-    return fmt::format("{}: {} in {:.2f} s\n", shown(input_name(run_.farm.manifest)),
-                       counts_.text(), seconds_since(start_));
+    const std::string audit =
+        run_.farm.audit > 0 ? fmt::format(", {} audited and alike", counts_.audited()) : "";
+    return fmt::format("{}: {}{} in {:.2f} s\n", shown(input_name(run_.farm.manifest)),
+                       counts_.text(), audit, seconds_since(start_));
   }
 
  private:
@@ -167,6 +175,9 @@ class Run {
       line.error = status.error();
       return;
     }
+    // As many folders as the sources have. What fails fails again, with words, at the output.
+    std::error_code ignored;
+    make_folders(job.output.parent_path(), ignored);
     Result<KeyedOutcome> outcome = cook_by_key(job, *key, stores_);
     if (outcome && outcome->difference) {
       line.error = *outcome->difference;

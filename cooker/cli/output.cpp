@@ -3,6 +3,7 @@
 #include "cooker/cli/output.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <string_view>
@@ -33,13 +34,26 @@ void complain(std::string_view what) noexcept {
   static_cast<void>(std::fputs(line.c_str(), stderr));
 }
 
+namespace {
+
+// Whether the message ends with a reason of the system's that another try meets again.
+bool has_lasting_reason(const Error& error) {
+  const auto ends_it = [&](int reason) {
+    return error.detail.ends_with(std::generic_category().message(reason));
+  };
+  return std::ranges::any_of(std::array{EACCES, EPERM, EROFS, EISDIR, ENAMETOOLONG}, ends_it);
+}
+
+}  // namespace
+
 int fail(const Error& error) {
   complain(error.message());
   return error_info(error.code).exit_status;
 }
 
 bool may_pass(const Error& error) {
-  return error.code == Errc::kOutOfMemory || error_info(error.code).exit_status == kExitInputOutput;
+  if (error.code == Errc::kOutOfMemory) return true;
+  return error_info(error.code).exit_status == kExitInputOutput && !has_lasting_reason(error);
 }
 
 int usage(const std::string& what) {

@@ -124,6 +124,7 @@ class KeyedCook {
   Result<KeyedOutcome> audit(const CookCache::Entry& hit) {
     Result<KeyedOutcome> cooked = cook();
     if (!cooked) return cooked.error();
+    cooked->is_audited = true;
     const Result<Digest> output = sha256_of_file(job_.output);
     if (!output) return output.error();
     if (*output == hit.output) return cooked;

@@ -35,6 +35,7 @@ struct KeyedOutcome {
     kThere,  // the output has been there, by the journal
   };
   How how = How::kCooked;
+  bool is_audited = false;         // was in the cache, and was cooked all the same
   std::uint64_t bytes = 0;         // of the output
   std::string report;              // empty if the output has been there
   std::optional<Summary> summary;  // of what was cooked

@@ -39,7 +39,7 @@ class LineReader {
     }
     if (parsed.fault != ParsedJson::Fault::kNone) {
       return fault(
-          fmt::format("expected one JSON object, found none at byte {} of the line", parsed.byte));
+          fmt::format("expected one JSON object in this line, found none at byte {}", parsed.byte));
     }
     if (!parsed.value.is_object()) {
       return fault(fmt::format("expected a JSON object, found {}", parsed.value.type_name()));

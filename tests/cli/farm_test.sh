@@ -19,7 +19,7 @@ make_mesh() {
     }
   }' >"$2"
 }
-mkdir in cooked single
+mkdir in single # a manifest makes the folders of its outputs
 jobs=24
 for i in $(seq 1 $jobs); do
   make_mesh $((i + 3)) "in/m$i.obj"
@@ -172,6 +172,10 @@ grep -q '^boxtree: no_faces: bad.jsonl:3: in/bad.obj' err
 sed 's|in/m4.obj|in/absent.obj|' bad.jsonl >absent.jsonl
 expect 2 "$boxtree" cook --manifest absent.jsonl --json --journal absent.done
 same "$(jq -c 'select(.error) | [.line, .key == null, .error.may_pass]' out | sort | xargs)" '[3,false,false] [4,true,true]'
+# A reason that stays: no other run writes it either.
+echo "{\"inputs\":[\"in/m1.obj\"],\"output\":\"cooked/$(printf 'x%.0s' $(seq 300)).bxt\"}" >long.jsonl
+expect 3 "$boxtree" cook --manifest long.jsonl --json
+same "$(jq -c '[.error.name, .error.status, .error.may_pass]' out)" '["write_failed",2,false]'
 # Its shard alone tells it.
 for i in 0 1 2; do "$boxtree" cook --manifest absent.jsonl --json --shard "$i/3" 2>/dev/null || true; done | jq -c 'select(.line == 4) | .line' >told
 same "$(wc -l <told)" 1

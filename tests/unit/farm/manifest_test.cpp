@@ -40,7 +40,7 @@ std::string refusal(const std::string& text) {
 TEST(Manifest, SaysWhatIsWrongWithALine) {
   const std::string good = "{\"inputs\":[\"a.obj\"],\"output\":\"a.bxt\"}\n";
   EXPECT_EQ(refusal(good + "{\"inputs\":[\"b.obj\"],\"output\":\"b"),
-            "jobs.jsonl:2: expected one JSON object, found none at byte 32 of the line");
+            "jobs.jsonl:2: expected one JSON object in this line, found none at byte 32");
   EXPECT_EQ(refusal(good + "7"), "jobs.jsonl:2: expected a JSON object, found number");
   EXPECT_EQ(refusal("{\"input\":[\"a.obj\"],\"output\":\"a.bxt\"}"),
             "jobs.jsonl:1: expected inputs, output, options or profile, found \"input\"; did you "
