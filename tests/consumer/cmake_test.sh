@@ -227,6 +227,10 @@ refused_call "'DEPENDS' in MESHES is neither a keyword nor the name of a mesh" \
   TARGET all_assets MESHES ../meshes/level.obj DEPENDS other
 refused_call "'MESH' is no keyword; did you mean MESHES? Expected" TARGET all_assets MESH ../meshes/level.obj
 refused_call "'../meshes/level.obj' is no keyword and stands behind none that takes it. Expected" TARGET all_assets ../meshes/level.obj
+refused_call "MESHES has '../meshes/level.obj;../meshes/crate.obj' in one piece" \
+  TARGET all_assets MESHES '"../meshes/level.obj;../meshes/crate.obj"'
+refused_call "CACHE of target all_assets has no value" TARGET all_assets MESHES ../meshes/level.obj CACHE
+refused_call "DEFINITION is 'A B', which is no name of a macro" TARGET all_assets MESHES ../meshes/level.obj DEFINITION '"A B"'
 refused_call "TARGET is missing" MESHES ../meshes/level.obj
 # shellcheck disable=SC2016 # a variable of CMake
 for meshes in MESHES 'MESHES ${NONE}' 'MESHES ""' ''; do
