@@ -169,10 +169,12 @@ Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& si
   const double diagonal = length_of(bounds.diagonal());
   workload.cast_radius = 0.01 * diagonal;
   for (std::size_t i = 0; i < size.rays; ++i) {
-    const Eigen::Vector3d origin = bounds.center() + diagonal * random.direction();
+    const Eigen::Vector3d away = random.direction();
+    const Eigen::Vector3d origin = bounds.center() + diagonal * away;
     const Eigen::Vector3d toward = random.inside(bounds) - origin;
     const double length = length_of(toward);
-    workload.rays.push_back({origin, length > 0 ? Eigen::Vector3d(toward / length) : toward});
+    // Bounds that are a point, or one beside their distance from 0, leave no way.
+    workload.rays.push_back({origin, length > 0 ? Eigen::Vector3d(toward / length) : Eigen::Vector3d(-away)});
   }
   workload.camera = camera_rays(bounds, diagonal, size.camera);
   workload.lattice = lattice_points(bounds, size.lattice);
