@@ -15,7 +15,10 @@ boxtree::Pose at(double x, double y, double z) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 3) return 2;
+  if (argument_count != 3) {
+    std::fputs("usage: assemble level.bxt crate.bxt\n", stderr);
+    return 2;
+  }
   const auto level = boxtree::File::open(arguments[1]), crate = boxtree::File::open(arguments[2]);
   std::vector<boxtree::Tree> trees;
   for (const auto* file : {&level, &crate}) {  // the files must outlive the scene

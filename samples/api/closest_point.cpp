@@ -6,7 +6,10 @@
 #include <boxtree/boxtree.h>
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
+  if (argument_count != 2) {
+    std::fputs("usage: closest_point level.bxt\n", stderr);
+    return 2;
+  }
   const auto file = boxtree::File::open(arguments[1]);
   const auto tree = file ? boxtree::Tree::bind(*file) : file.error();
   if (!tree) {

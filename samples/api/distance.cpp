@@ -6,7 +6,10 @@
 #include <boxtree/boxtree.h>
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 3) return 2;
+  if (argument_count != 3) {
+    std::fputs("usage: distance level.bxt crate.bxt\n", stderr);
+    return 2;
+  }
   const auto level_file = boxtree::File::open(arguments[1]);
   const auto crate_file = boxtree::File::open(arguments[2]);
   if (!level_file || !crate_file) return 1;

@@ -6,7 +6,10 @@
 #include <boxtree/boxtree.h>
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
+  if (argument_count != 2) {
+    std::fputs("usage: errors level.bxt\n", stderr);
+    return 2;
+  }
   const auto missing = boxtree::File::open("no-such-file.bxt");
   if (!missing) std::printf("%s\n", missing.error().message().c_str());
 

@@ -6,7 +6,10 @@
 #include <boxtree/boxtree.h>
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
+  if (argument_count != 2) {
+    std::fputs("usage: files level-and-crate.bxt\n", stderr);
+    return 2;
+  }
   const auto file = boxtree::File::open(arguments[1]);
   if (!file) {
     std::fprintf(stderr, "%s\n", file.error().message().c_str());

@@ -7,7 +7,10 @@
 #include <boxtree/boxtree.h>
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
+  if (argument_count != 2) {
+    std::fputs("usage: frustum courtyard.bxt\n", stderr);
+    return 2;
+  }
   const auto file = boxtree::File::open(arguments[1]);
   boxtree::SceneOptions needs;
   needs.queries = boxtree::kBoxQueries;  // those of frustums belong to them

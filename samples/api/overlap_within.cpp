@@ -21,7 +21,10 @@ const char* name(boxtree::Overlap overlap) {
 }
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 3) return 2;
+  if (argument_count != 3) {
+    std::fputs("usage: overlap_within level.bxt crate.bxt\n", stderr);
+    return 2;
+  }
   const auto level_file = boxtree::File::open(arguments[1]);
   const auto crate_file = boxtree::File::open(arguments[2]);
   if (!level_file || !crate_file) return 1;

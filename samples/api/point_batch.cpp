@@ -7,7 +7,10 @@
 #include <boxtree/boxtree.h>
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
+  if (argument_count != 2) {
+    std::fputs("usage: point_batch level.bxt\n", stderr);
+    return 2;
+  }
   const auto file = boxtree::File::open(arguments[1]);
   const auto tree = file ? boxtree::Tree::bind(*file) : file.error();
   if (!tree) {
@@ -18,7 +21,8 @@ int main(int argument_count, char** arguments) {
   constexpr std::size_t kHeights = 3, kPlaces = 5;
   std::array<Eigen::Vector3d, kPlaces * kHeights> points;  // those of a place follow each other
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto place = static_cast<double>(i / kHeights), height = static_cast<double>(i % kHeights);
+    const auto place = static_cast<double>(i / kHeights),
+               height = static_cast<double>(i % kHeights);
     points[i] = {place - 2, 0, 0.5 + height};
   }
   std::array<boxtree::PointResult, points.size()> nearest;

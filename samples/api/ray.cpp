@@ -8,7 +8,10 @@
 using Eigen::Vector3d;
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
+  if (argument_count != 2) {
+    std::fputs("usage: ray level.bxt\n", stderr);
+    return 2;
+  }
   const auto file = boxtree::File::open(arguments[1]);
   const auto tree = file ? boxtree::Tree::bind(*file) : file.error();
   if (!tree) {

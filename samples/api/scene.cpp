@@ -8,7 +8,10 @@
 #include <boxtree/boxtree.h>
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
+  if (argument_count != 2) {
+    std::fputs("usage: scene level.bxt\n", stderr);
+    return 2;
+  }
   const auto file = boxtree::File::open(arguments[1]);
   boxtree::SceneOptions needs;
   needs.queries = boxtree::kRayQueries | boxtree::kPairQueries;  // refused here if left out

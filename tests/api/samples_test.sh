@@ -158,6 +158,8 @@ level: 3 faces, 6 triangles, 8 x 8 x 0.5
 crate: 6 faces, 12 triangles, 1 x 1 x 1
 the crate is tree 1
 END
+"$boxtree" cook "$meshes/crate.obj" --external -o external.bxt >/dev/null
+prints external external.bxt <<<"t 2, face 1 of my own arrays"
 # 2 x 2 of 8 x 8.
 prints threads level.bxt <<<"400 of 6400 rays meet the stair"
 
