@@ -191,6 +191,13 @@ int run_calibration(const Arguments& arguments) {
     imported->mesh.name = path.stem().string();
     meshes.push_back(std::move(imported->mesh));
   }
+  constexpr std::size_t kEnough = 3;
+  if (meshes.size() < kEnough) {
+    warn(
+        fmt::format("constants of so few meshes hold for their like alone: give {} or more, of "
+                    "different sizes",
+                    kEnough));
+  }
   const Result<Calibration> calibration = calibrate(meshes, arguments.runs);
   if (!calibration) return fail(calibration.error());
   if (arguments.json) {

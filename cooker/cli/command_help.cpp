@@ -41,6 +41,10 @@ int run_help(const Command& program, const Arguments& arguments) {
   const Command* at = &program;
   for (const std::string& word : arguments.names) {
     const Command* const command = at->find(word);
+    if (command == nullptr && at->commands().empty()) {
+      return usage(fmt::format("help: '{}' was not expected: {} has no commands of its own", word,
+                               name_of(*at)));
+    }
     if (command == nullptr) return usage(unknown_command(*at, word));
     at = command;
   }

@@ -253,6 +253,10 @@ std::string text_of_bytes(const Json& json) {
 void print_file(const Json& json) {
   fmt::print("format {}, {} bytes\n", json["version"].get<std::string>(),
              json["file_bytes"].get<std::uint64_t>());
+  if (json.contains("blob")) {
+    fmt::print("compressed whole, to {} bytes: it is decompressed before the first answer\n",
+               json["blob"]["file_bytes"].get<std::uint64_t>());
+  }
   if (json.contains("members")) {
     fmt::print("pack: {} of {}\n", counted(json["trees"].size(), "tree"),
                counted(json["members"].get<std::uint64_t>(), "file"));

@@ -79,6 +79,10 @@ int run(Arguments& arguments) {
       merge_world(*output, arguments.files, open_tile,
                   [&](const std::string& text) { step("merge: " + text); });
   step.clear();
+  if (!report && report.code() == Errc::kFileNotFound && !arguments.manifest.empty()) {
+    return fail({report.code(), report.error().detail + "; boxtree cook --manifest " +
+                                    shown(arguments.manifest.string()) + " makes it"});
+  }
   if (!report) return fail(report.error());
   if (arguments.json) {
     print(Json{{"output", output->title()},

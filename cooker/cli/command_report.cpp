@@ -2,10 +2,12 @@
 // `boxtree report`: which encoding to use for a mesh; with --paper the tables of the paper.
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -28,6 +30,8 @@
 #include "cooker/report/shell_word.h"
 #include "cooker/report/tradeoff_advice.h"
 #include "cooker/report/tradeoff_page.h"
+#include "cooker/system/input_failure.h"
+#include "cooker/system/path.h"
 #include "cooker/write/atomic_file.h"
 #include "cooker/write/outputs.h"
 
@@ -369,6 +373,13 @@ int run(const Arguments& arguments) {
   inputs.insert(inputs.end(), arguments.included.begin(), arguments.included.end());
   if (Status status = check_outputs(outputs_of(arguments), inputs); !status) {
     return usage("report: " + status.error().detail);
+  }
+  // Before the first is measured, which may take a minute.
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(status_of(input, ignored))) {
+      return fail(input_failure(input_name(input), ENOENT));
+    }
   }
   struct Kind {
     const std::filesystem::path& output;

@@ -17,7 +17,10 @@ Result<std::vector<std::string>> with_response_files(const std::vector<std::stri
       continue;
     }
     const Result<std::string> text = read_whole_file(named_path(word.substr(1)), kMaxFaceListBytes);
-    if (!text) return text.error();
+    if (!text) {
+      return Error{text.code(),
+                   word + ": a word with @ names a list of arguments: " + text.error().detail};
+    }
     for (std::string_view rest = *text; !rest.empty();) {
       const std::string_view line = take_line(rest);
       if (!line.empty()) all.emplace_back(line);

@@ -256,9 +256,9 @@ grep -q 'matrix: expected 16 numbers between commas, found "1,2,3"' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix inf,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1
 grep -q 'invalid_query: cube.bxt: frustum: planes: expected a matrix of finite numbers, .*found matrix \[inf,0,0,0,' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --instances
-same "$(cat err)" 'boxtree: no_scene: cube.bxt: instances are those of a scene, and this is one tree; leave --instances out for its faces, or query a file of cook --scene, without --tree'
+same "$(cat err)" 'boxtree: no_scene: cube.bxt: instances are those of a scene, and this is one tree; leave --instances out for its faces, or query a file of cook --scene, without --tree (boxtree split takes one out of a pack)'
 expect 1 "$boxtree" query cube.bxt contacts
-same "$(cat err)" 'boxtree: no_scene: cube.bxt: contacts are those of a scene, and this is one tree; of a tree use collide or pair, or query a file of cook --scene, without --tree'
+same "$(cat err)" 'boxtree: no_scene: cube.bxt: contacts are those of a scene, and this is one tree; of a tree use collide or pair, or query a file of cook --scene, without --tree (boxtree split takes one out of a pack)'
 # The error of a hull's file is told by its name, not by that of the tree.
 for kind in collide 'cast --direction 0,0,-1'; do
   # shellcheck disable=SC2086
@@ -666,10 +666,21 @@ for kind in ray cast collide point box sphere frustum pair distance overlap cont
   grep -q "^Usage: boxtree query FILE $kind " help
 done
 
+expect 1 "$boxtree" help cook query
+same "$(cat err)" "boxtree: usage: help: 'query' was not expected: boxtree cook has no commands of its own"
+# All inputs are looked for before the first is measured; a mesh may be a point.
+expect 2 "$boxtree" report cube.obj missing.obj -o missing.html
+grep -q '^boxtree: file_not_found: missing.obj: no such file; ' err
+[ ! -e missing.html ]
+printf 'v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n' >point.obj
+expect 0 "$boxtree" cook point.obj -o point.bxt
+expect 0 "$boxtree" bench point.bxt --quick --runs 1
 # A folder is none of the things that an output replaces.
 mkdir folder.bxt
 expect 2 "$boxtree" cook cube.obj -o folder.bxt
 same "$(cat err)" 'boxtree: write_failed: folder.bxt: is a folder; expected the name of a file'
+expect 1 "$boxtree" tile cube.obj -o tiles.obj
+same "$(cat err)" "boxtree: usage: tile: tiles.obj: expected another ending than .obj, which is that of a mesh, as tiles.jsonl"
 # Faces that name a vertex twice have no edges, so nothing is closed.
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 2\nf 1 1 3\n' >points.obj
 expect 0 "$boxtree" cook points.obj -o points.bxt
@@ -1145,6 +1156,8 @@ for method in lzma zstd; do
   expect 0 "$boxtree" info blob.bxt --json
   same "$(jq -r '.trees[0].codec' out)" plain-f32
   same "$(jq -c '.blob.file_bytes < .blob.resident_bytes' out)" true
+  expect 0 "$boxtree" info blob.bxt
+  same "$(sed -n 2p out)" "compressed whole, to $(stat -c %s blob.bxt) bytes: it is decompressed before the first answer"
   expect 0 "$boxtree" query blob.bxt point --at 0.5,0.5,3 --json
   same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
   head -c 300 blob.bxt >short.bxt
@@ -1202,6 +1215,7 @@ bench_says '^  distance +median, ns +nodes +largest error$'
 bench_says '^    error 0\.1 +[0-9]+ +[0-9.]+ +[0-9.e-]+$'
 bench_says '^    budget [0-9]+ +[0-9]+ +[0-9.]+ +([0-9.e-]+|-)$'
 expect 0 "$boxtree" bench --calibrate cube.obj --runs 1
+grep -qx 'boxtree: warning: constants of so few meshes hold for their like alone: give 3 or more, of different sizes' err
 bench_says '^ns of a query, of a node expanded and of a leaf read, for rays, boxes \(cubes with an edge of 5 % of the diagonal\), points and pairs '
 bench_says '^wide8 +exact +f64 *( +[0-9.]+){12}$'
 bench_says '^modelled and measured times differ by at most [0-9.]+ times$'
