@@ -134,19 +134,25 @@ class Merge {
     return {};
   }
 
-  // Queries settle ties by the numbers of faces: no two may have the same.
+  // Queries settle ties by the numbers of faces: no two trees may have the same. Within one, the
+  // parts of a polygon that import split do.
   Status add_numbers(const fs::path& path, const File& file, std::uint32_t number) {
     const Result<Tree> tree = Tree::bind(file, number);
     if (!tree) return in_file(path, tree.error());
-    const std::uint32_t faces = records_.back().face_count;
-    std::array<std::uint32_t, kLeafFaces> ids;
-    for (std::uint32_t first = 0; first < faces; first += kLeafFaces) {
-      BoundTree::of(*tree).read_leaf_ids(first / kLeafFaces, ids);
-      for (const std::uint32_t id : std::span(ids).first(std::min(faces - first, kLeafFaces))) {
-        if (numbers_.insert(id)) continue;
-        return unfit(path, fmt::format("there is another face {} before this one; name each tile "
-                                       "of one world once",
-                                       id));
+    for (const bool is_checked : {false, true}) {
+      for (std::uint32_t first = 0; first < tree->face_count(); first += kLeafFaces) {
+        std::array<std::uint32_t, kLeafFaces> ids;
+        BoundTree::of(*tree).read_leaf_ids(first / kLeafFaces, ids);
+        for (const std::uint32_t id :
+             std::span(ids).first(std::min(tree->face_count() - first, kLeafFaces))) {
+          if (is_checked) {
+            numbers_.insert(id);
+          } else if (numbers_.contains(id)) {
+            return unfit(path, fmt::format("there is another face {} before this one; name each "
+                                           "tile of one world once",
+                                           id));
+          }
+        }
       }
     }
     return {};

@@ -12,15 +12,14 @@ namespace boxtree::cooker {
 /// Takes 8 KB for each 65536 numbers of which it has one, and half a megabyte for itself.
 class NumberSet {
  public:
-  /// Whether it was not in the set.
-  bool insert(std::uint32_t number) {
+  [[nodiscard]] bool contains(std::uint32_t number) const noexcept {
+    const Page* const page = pages_[number / kPageBits].get();
+    return page != nullptr && ((*page)[number % kPageBits / 64] >> number % 64 & 1) != 0;
+  }
+  void insert(std::uint32_t number) {
     std::unique_ptr<Page>& page = pages_[number / kPageBits];
     if (page == nullptr) page = std::make_unique<Page>();
-    std::uint64_t& word = (*page)[number % kPageBits / 64];
-    const std::uint64_t bit = std::uint64_t{1} << number % 64;
-    const bool is_new = (word & bit) == 0;
-    word |= bit;
-    return is_new;
+    (*page)[number % kPageBits / 64] |= std::uint64_t{1} << number % 64;
   }
 
  private:

@@ -340,7 +340,7 @@ Result<WorldFaces> read_imported(const fs::path& path, const WorldReading& readi
                              path.string(), expected, reading.memory)};
   }
   const Result<Imported> imported =
-      import_mesh(path, {.skip_bad = reading.skip_bad, .skips_bad = "tile", .try_first = true});
+      import_mesh(path, {.skip_bad = reading.skip_bad, .command = "tile", .try_first = true});
   if (!imported) return imported.error();
   const SourceMesh& mesh = imported->mesh;
   std::vector<WorldCorner> corners;  // of all parts of a polygon

@@ -28,8 +28,7 @@ using WorldFaceSink = std::function<Status(const WorldFace&)>;
 /// How a source is read.
 struct WorldReading {
   std::uint64_t memory = 0;  ///< [bytes] The most that it takes.
-  bool skip_bad =
-      false;  ///< Leaves out faces that import_mesh calls bad; others keep their numbers.
+  bool skip_bad = false;     ///< Leave out what import_mesh calls bad; others keep their numbers.
 };
 
 /// What a source had.

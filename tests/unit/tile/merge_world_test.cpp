@@ -119,6 +119,23 @@ TEST_F(MergeWorld, RefusesAFaceThatTwoTilesHave) {
   }
 }
 
+// All parts have the number of their polygon, and are in one tile.
+TEST_F(MergeWorld, TakesAPolygonInParts) {
+  folder_.write("parts.ply",
+                "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                "property int face\nend_header\n0 0 0\n1 0 0\n2 1 0.5\n1 2 0\n0 1 0.3\n"
+                "5 0 1 2 3 4 8\n");
+  CookJob job = require(job_of_words({"--exact", "--face-ids", "face"}));
+  job.inputs = {folder_.path() / "parts.ply"};
+  job.output = folder_.path() / "parts.bxt";
+  static_cast<void>(require(cook_job(job)));
+  const MergeReport report = require(merge({job.output, cook("other", "0 2 3", "9")}));
+  EXPECT_EQ(report.trees, 2u);
+  EXPECT_EQ(report.faces, 4u);  // three parts and a triangle
+  EXPECT_EQ(merge({job.output, cook("same", "0 2 3", "8")}).code(), Errc::kMeshUnsupported);
+}
+
 TEST_F(MergeWorld, RefusesTilesOfTwoGrids) {
   const fs::path coarse =
       cook("coarse", "0 1 2", "3", {"--grid-step", "2^-3", "--face-ids", "face"});
