@@ -104,8 +104,8 @@ refused_filter 'a filter true for what may be hit' \
 
 refused_visitor 'must return bool: a visitor true to go on' \
   'overlap_sphere(tree, boxtree::Sphere{{0, 0, 0}, 1}, [](const boxtree::FaceRef&) {})'
-# Nor is older C++ a page of templates.
-for header in $(sed '/^shape.h$/d;/^triangle.h$/d;/^kinds.h$/d;/^configuration.h$/d' <<<"$installed"); do
+# Nor is older C++ a page of templates. The headers left out declare plain data, which any C++ takes.
+for header in $(sed '/^shape.h$/d;/^triangle.h$/d;/^kinds.h$/d;/^memory.h$/d;/^configuration.h$/d' <<<"$installed"); do
   echo "#include <boxtree/$header>" >"$work/alone.cpp"
   if "$compiler" -std=c++17 -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/alone.cpp" 2>"$work/log"; then
     fail "$header compiles as C++17"
