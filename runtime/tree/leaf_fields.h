@@ -175,17 +175,14 @@ struct LeafTriangles {
                                           double (&out)[3][3]) const {
     std::uint32_t references[3];
     find_corners(lane, references);
+    const bool is_grid = numbers == ClusterNumbers::kGrid;
     for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t k = 0; k < 3; ++k) out[c][k] = stored(references[c], k, numbers);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t n = number[k][references[c]];
+        out[c][k] = is_grid ? static_cast<double>(static_cast<std::int32_t>(n))
+                            : static_cast<double>(std::bit_cast<float>(n));
+      }
     }
-  }
-
-  /// A coordinate of a reference: in steps of the grid, or the float of the source.
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE double stored(std::uint32_t reference, std::size_t axis,
-                                                    ClusterNumbers numbers) const noexcept {
-    const std::uint32_t n = number[axis][reference];
-    return numbers == ClusterNumbers::kGrid ? static_cast<double>(static_cast<std::int32_t>(n))
-                                            : static_cast<double>(std::bit_cast<float>(n));
   }
 };
 

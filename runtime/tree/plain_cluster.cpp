@@ -5,15 +5,25 @@
 #include <cstring>
 
 #include "format/bits.h"
-#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/triangle.h"
 
 namespace boxtree {
 namespace {
 
+// Positions of references as floats: [axis][slot].
+using LeafPositions = float[3][kMostLeafReferences];
+
+// What the references of a leaf lead to: vertices of the cluster, and where LeafTriangles has their
+// positions.
+struct LeafReferences {
+  std::uint32_t count = 0;
+  std::array<std::uint16_t, kMostLeafReferences> vertex;
+  std::array<std::uint8_t, kMostLeafReferences> slot;
+};
+
 bool find(const ClusterView& clusters, std::uint32_t number, PlainCluster& out) {
-  if (out.section == clusters.bytes.data() && out.leaves.cluster == number) return true;
-  out.section = nullptr;
+  if (out.leaves.cluster == number) return true;
+  out.leaves.cluster = LeafTable::kNone;
   Cluster cluster;
   if (!find_cluster(clusters, number, cluster) ||
       cluster.header().group_size() > ClusterHeader::kFastGroupSize ||
@@ -26,7 +36,6 @@ bool find(const ClusterView& clusters, std::uint32_t number, PlainCluster& out) 
   out.group_count = cluster.groups;
   out.vertices_at = cluster.vertices_at;
   out.bases = cluster.bytes + cluster.bases_at;
-  out.section = clusters.bytes.data();
   return true;
 }
 
@@ -79,16 +88,9 @@ bool join_faces(const LeafFields& faces, LeafTriangles& out) {
   return true;
 }
 
-// Where a vertex is: the first bit of its offsets, and their widths.
-struct VertexPlace {
-  std::uint32_t group;
-  std::uint32_t bit;
-
-  VertexPlace(const PlainCluster& cluster, std::uint32_t vertex)
-      : group(vertex * cluster.leaves.per_group >> 16),
-        bit(8 * (cluster.vertices_at + cluster.groups.start[group]) +
-            (vertex - group * cluster.leaves.group_size) * cluster.groups.stride[group]) {}
-};
+std::uint32_t group_of(const PlainCluster& cluster, std::uint32_t vertex) {
+  return vertex * cluster.leaves.per_group >> 16;
+}
 
 // What all vertices of a cluster have in common on one axis.
 struct Axis {
@@ -135,7 +137,7 @@ template <class Put>
 void for_each_number(PlainCluster& cluster, const LeafReferences& references, const Put& put) {
   for (std::uint32_t r = 0; r < references.count; ++r) {
     const std::uint32_t vertex = references.vertex[r];
-    const std::uint32_t number = vertex * cluster.leaves.per_group >> 16;
+    const std::uint32_t number = group_of(cluster, vertex);
     if (((cluster.known >> number) & 1u) == 0) prepare_group(cluster, number);
     const PlainGroup& group = cluster.group[number];
     const std::uint32_t at =
@@ -191,12 +193,9 @@ void convert(const ClusterHeaderView& header, float scale, LeafTriangles& out,
   }
 }
 
-}  // namespace
-
-PlainCluster::PlainCluster() noexcept = default;
-
-bool find_plain_leaf(const ClusterView& clusters, std::uint32_t leaf, PlainCluster& found,
-                     LeafReferences& references, LeafTriangles& out) noexcept {
+// The faces and the references of a leaf.
+bool find_leaf(const ClusterView& clusters, std::uint32_t leaf, PlainCluster& found,
+               LeafReferences& references, LeafTriangles& out) {
   LeafFields faces;
   if (!find(clusters, leaf / kClusterLeaves, found) ||
       !found.leaves.find(leaf % kClusterLeaves, faces) ||
@@ -207,8 +206,9 @@ bool find_plain_leaf(const ClusterView& clusters, std::uint32_t leaf, PlainClust
   return true;
 }
 
-void read_plain_numbers(PlainCluster& cluster, const LeafReferences& references, bool is_grid,
-                        float scale, LeafTriangles& out, LeafPositions& positions) noexcept {
+// LeafTriangles::number, and the positions, of numbers of 32 bits.
+void read_numbers(PlainCluster& cluster, const LeafReferences& references, bool is_grid,
+                  float scale, LeafTriangles& out, LeafPositions& positions) {
   std::memset(out.number, 0, sizeof(out.number));
   for_each_number(cluster, references,
                   [&](std::uint32_t slot, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
@@ -224,19 +224,21 @@ void read_plain_numbers(PlainCluster& cluster, const LeafReferences& references,
   }
 }
 
-bool read_plain_doubles(const PlainCluster& cluster, const LeafReferences& references,
-                        const Frame& frame, DoublePositions& out) noexcept {
+// Positions of numbers of 64 bits, in tree space. False where one is out of range.
+bool read_doubles(const PlainCluster& cluster, const LeafReferences& references, const Frame& frame,
+                  DoublePositions& out) {
   const std::array<Axis, 3> axes = axes_of(cluster, true);
   for (std::uint32_t r = 0; r < references.count; ++r) {
-    const VertexPlace place(cluster, references.vertex[r]);
-    std::uint32_t at = place.bit;
+    const std::uint32_t vertex = references.vertex[r], group = group_of(cluster, vertex);
+    std::uint32_t at = 8 * (cluster.vertices_at + cluster.groups.start[group]) +
+                       (vertex - group * cluster.leaves.group_size) * cluster.groups.stride[group];
     Eigen::Vector3d stored;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t width = axes[k].width[place.group];
+      const std::uint32_t width = axes[k].width[group];
       const std::uint64_t offset = read_wide_bits(cluster.leaves.bytes, at, width);
       at += width;
       stored[static_cast<Eigen::Index>(k)] = double_of_number(
-          static_cast<std::int64_t>(axes[k].number(offset, place.group)), axes[k].trailing);
+          static_cast<std::int64_t>(axes[k].number(offset, group)), axes[k].trailing);
     }
     const Eigen::Vector3d position = frame.to_tree(stored);
     if (!is_within_range(position)) return false;
@@ -247,16 +249,20 @@ bool read_plain_doubles(const PlainCluster& cluster, const LeafReferences& refer
   return true;
 }
 
+}  // namespace
+
+PlainCluster::PlainCluster() noexcept = default;
+
 bool PlainClusterReader::read(std::uint32_t leaf, float scale, LeafTriangles& triangles,
                               LeafCoordinates& out) noexcept {
   LeafReferences references;
   LeafPositions position;
-  if (!find_plain_leaf(clusters_, leaf, found_, references, triangles)) return false;
+  if (!find_leaf(clusters_, leaf, found_, references, triangles)) return false;
   if (clusters_.numbers != ClusterNumbers::kF64) {
-    read_plain_numbers(found_, references, clusters_.numbers == ClusterNumbers::kGrid, scale,
-                       triangles, position);
+    read_numbers(found_, references, clusters_.numbers == ClusterNumbers::kGrid, scale, triangles,
+                 position);
   } else {
-    if (!read_plain_doubles(found_, references, frame_, doubles_)) return false;
+    if (!read_doubles(found_, references, frame_, doubles_)) return false;
     for (std::uint32_t r = 0; r < references.count; ++r) {
       const std::uint32_t slot = references.slot[r];
       for (std::size_t k = 0; k < 3; ++k) position[k][slot] = static_cast<float>(doubles_[slot][k]);

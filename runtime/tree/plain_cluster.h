@@ -25,11 +25,11 @@ struct PlainGroup {
   std::array<std::uint8_t, 2> width;  // of x and y
 };
 
-/// The cluster that was read last, so that its other leaves need not find it again.
+/// The cluster that was read last (LeafTable::cluster), so that its other leaves need not find it
+/// again.
 struct PlainCluster {
   PlainCluster() noexcept;  // not inlined, for the size of each walk
 
-  const std::byte* section = nullptr;  // null before any was found
   LeafTable leaves;
   ClusterGroups groups;
   std::array<PlainGroup, ClusterHeader::kMostGroups> group;
@@ -38,34 +38,6 @@ struct PlainCluster {
   std::uint32_t vertices_at = 0;     // byte
   const std::byte* bases = nullptr;  // a byte for each group, an axis after the other
 };
-
-/// What the references of a leaf lead to: vertices of the cluster, and where LeafTriangles has
-/// their positions.
-struct LeafReferences {
-  std::uint32_t count = 0;
-  std::array<std::uint16_t, kMostLeafReferences> vertex;
-  std::array<std::uint8_t, kMostLeafReferences> slot;
-};
-
-/// Positions of references as floats: [axis][slot].
-using LeafPositions = float[3][kMostLeafReferences];
-
-/// Decodes the faces and the references of leaf `leaf`, of 8 faces. False when its bytes are
-/// corrupt, or when decode_cluster_leaf has to read it. Preconditions: the leaf exists and has 8
-/// faces, and there are cluster_table_bytes.
-[[nodiscard]] bool find_plain_leaf(const ClusterView& clusters, std::uint32_t leaf,
-                                   PlainCluster& found, LeafReferences& references,
-                                   LeafTriangles& out) noexcept;
-
-/// LeafTriangles::number, and the positions times `scale`. Preconditions: find_plain_leaf has found
-/// the references, and numbers have 32 bits.
-void read_plain_numbers(PlainCluster& cluster, const LeafReferences& references, bool is_grid,
-                        float scale, LeafTriangles& out, LeafPositions& positions) noexcept;
-
-/// Positions of numbers of 64 bits, in tree space. False where one is out of range.
-/// Precondition: find_plain_leaf has found the references.
-[[nodiscard]] bool read_plain_doubles(const PlainCluster& cluster, const LeafReferences& references,
-                                      const Frame& frame, DoublePositions& out) noexcept;
 
 /// Reads leaves of one tree, one at a time: what ClusterReader (walk/cluster-inl.h) is where
 /// vectors have eight numbers.
@@ -76,9 +48,11 @@ class PlainClusterReader {
                      DoublePositions& doubles) noexcept
       : clusters_(clusters), frame_(frame), doubles_(doubles) {}
 
-  /// As find_plain_leaf. Coordinates are multiplied by `scale`, or those of 64 bits placed in
-  /// tree space and rounded. Corners of leaves without quads are those of the source but for a
-  /// turn, which LeafTriangles::read_corners() undoes.
+  /// Decodes a leaf of 8 faces; coordinates are multiplied by `scale`, or those of 64 bits placed
+  /// in tree space and rounded. Corners of leaves without quads are those of the source but for a
+  /// turn, which LeafTriangles::read_corners() undoes. False when its bytes are corrupt, or when
+  /// decode_cluster_leaf has to read it. Preconditions: the leaf exists and has 8 faces, and there
+  /// are cluster_table_bytes.
   [[nodiscard]] bool read(std::uint32_t leaf, float scale, LeafTriangles& triangles,
                           LeafCoordinates& out) noexcept;
 

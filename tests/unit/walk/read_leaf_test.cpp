@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Whole leaves by vectors, in every instruction set, and by LeafReader, which reads them number by
-// number, against leaves in parts, which decode_cluster_leaf decodes: the same triangles to the
-// bit, of every store, and the same errors of corrupt bytes.
+// Whole leaves by vectors, in every instruction set, and those that walks by NEON read, against
+// LeafReader, which reads them number by number: the same triangles to the bit, of every store, and
+// the same errors of corrupt bytes.
 #include "runtime/walk/read_leaf.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -16,6 +17,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/tree/plain_cluster.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/unit/walk/targets.h"
@@ -54,6 +56,58 @@ std::pair<Errc, std::vector<std::uint64_t>> read_in_parts(const LeafReader& leav
   return {Errc::kOk, content};
 }
 
+// The three corners of a triangle, each rounded to floats, in any order.
+using FloatCorners = std::array<std::array<float, 3>, 3>;
+FloatCorners in_order(FloatCorners corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+// A full leaf of clusters by PlainClusterReader, which walks by NEON use, against that of
+// LeafReader: the exact triangles, the faces and, in floats, the corners but for a turn. It finds
+// corrupt bytes, too, but not that a coordinate is out of range, which LeafFloats looks for, and
+// leaves large groups to LeafReader.
+void compare_plain_leaf(const LeafReader& leaves, std::uint32_t first, Errc error,
+                        const TriangleBatch& expected) {
+  DoublePositions doubles;
+  LeafTriangles triangles;
+  LeafCoordinates floats;
+  PlainClusterReader reader(leaves.clusters(), leaves.frame(), doubles);
+  const auto scale = static_cast<float>(leaves.stored_scale());
+  if (!reader.read(first / kLeafFaces, scale, triangles, floats)) {
+    Cluster cluster;
+    const bool is_found = find_cluster(leaves.clusters(), first / kClusterFaces, cluster);
+    const bool has_large_groups =
+        is_found && cluster.header().group_size() > ClusterHeader::kFastGroupSize;
+    EXPECT_TRUE(error != Errc::kOk || has_large_groups) << "leaf at " << first;
+    return;
+  }
+  if (error != Errc::kOk) {
+    EXPECT_EQ(error, Errc::kVertexNotFinite) << "leaf at " << first;
+    return;
+  }
+  ASSERT_EQ(triangles.count, expected.count);
+  for (std::uint32_t lane = 0; lane < triangles.count; ++lane) {
+    EXPECT_EQ(first + triangles.face_and_half(lane) / 2, expected.face[lane]);
+    std::uint32_t references[3];
+    triangles.find_corners(lane, references);
+    double stored[3][3];
+    triangles.read_corners(lane, leaves.clusters().numbers, stored);
+    FloatCorners in_floats, exact;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double position = leaves.is_from_origin() ? stored[c][k] * leaves.stored_scale()
+                                                        : doubles[references[c]][k];
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(position),
+                  std::bit_cast<std::uint64_t>(expected.coordinate[c][k][lane]));
+        in_floats[c][k] = floats[c][k][lane];
+        exact[c][k] = static_cast<float>(position);
+      }
+    }
+    EXPECT_EQ(in_order(in_floats), in_order(exact));
+  }
+}
+
 // Reads every leaf in all ways. Returns how many were read without an error.
 std::uint32_t compare_leaves(const Tree& bound, const char* name) {
   const BoundTree& tree = BoundTree::of(bound);
@@ -66,6 +120,9 @@ std::uint32_t compare_leaves(const Tree& bound, const char* name) {
     EXPECT_EQ(read_leaf(tree, leaf, actual), error) << name << ", leaf at " << first;
     const auto [error_of_parts, parts] = read_in_parts(tree.leaves(), leaf);
     EXPECT_EQ(error_of_parts, error) << name << ", leaf at " << first;
+    if (tree.leaves().has_clusters() && leaf.second == kLeafFaces) {
+      compare_plain_leaf(tree.leaves(), first, error, expected);
+    }
     if (error != Errc::kOk) continue;
     EXPECT_EQ(parts, content_of(expected)) << name << ", leaf at " << first;
     EXPECT_EQ(content_of(actual), content_of(expected)) << name << ", leaf at " << first;
