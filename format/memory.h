@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <new>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 #include <boxtree/memory.h>
@@ -15,6 +15,15 @@ namespace boxtree {
 [[nodiscard]] void* allocate(const Memory* memory, std::size_t size, std::size_t alignment);
 /// What allocate() gave for the same size and alignment.
 void release(const Memory* memory, void* place, std::size_t size, std::size_t alignment) noexcept;
+
+/// Ends an object in memory that allocate() gave, whose Memory may be a part of it.
+template <class T>
+void destroy(const T* object) noexcept {
+  const Memory memory = object->memory();
+  auto* const place = const_cast<T*>(object);  // only what is constant for others is
+  place->~T();
+  release(&memory, place, sizeof(T), alignof(T));
+}
 
 /// Allocates for containers of the standard library. Keeps a pointer: the Memory has to live as
 /// long as they do, in the object that owns them.

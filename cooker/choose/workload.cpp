@@ -174,7 +174,8 @@ Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& si
     const Eigen::Vector3d toward = random.inside(bounds) - origin;
     const double length = length_of(toward);
     // Bounds that are a point, or one beside their distance from 0, leave no way.
-    workload.rays.push_back({origin, length > 0 ? Eigen::Vector3d(toward / length) : Eigen::Vector3d(-away)});
+    workload.rays.push_back({origin, -away});
+    if (length > 0) workload.rays.back().direction = toward / length;
   }
   workload.camera = camera_rays(bounds, diagonal, size.camera);
   workload.lattice = lattice_points(bounds, size.lattice);

@@ -89,7 +89,7 @@ void set_options(CookArguments& arguments) {
                          !options.blob && is_grid_welcome;
   options.may_use_arrays = options.geometry == GeometryId::kExact;
   options.import.try_first = !arguments.trusted;
-  options.import.skips_bad = "cook";
+  options.import.command = "cook";
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
 }

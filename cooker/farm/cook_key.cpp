@@ -60,7 +60,7 @@ Json form_of(const SearchOptions& search) {
 }
 
 Json form_of(const ImportOptions& import) {
-  const auto& [skip_bad, skips_bad, precision, keep_doubles, try_first, keep_polygon_corners,
+  const auto& [skip_bad, command, precision, keep_doubles, try_first, keep_polygon_corners,
                materials, user_data, face_ids, bytes] = import;
   return {{"skip_bad", skip_bad},
           {"precision", precision_name(precision)},

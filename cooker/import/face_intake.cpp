@@ -34,16 +34,16 @@ FaceFault vertex_not_finite(const std::string& vertex, const std::array<double, 
 }
 
 Error error_of_face(const std::string& file, std::uint64_t face, const FaceFault& fault,
-                    const char* skips_bad) {
+                    const char* command) {
   const std::string remedy =
-      skips_bad == nullptr ? "" : fmt::format(" ({} --skip-bad drops such faces)", skips_bad);
+      command == nullptr ? "" : fmt::format(" ({} --skip-bad drops such faces)", command);
   return {fault.code, fmt::format("{}: face {}: {}{}", file, face, fault.reason, remedy)};
 }
 
 Status report_fault(FaceFault fault, std::uint32_t face_id, const std::string& file,
                     const ImportOptions& options, ImportReport& report) {
   if (!options.skip_bad) {
-    return error_of_face(file, face_id, fault, options.skips_bad);
+    return error_of_face(file, face_id, fault, options.command);
   }
   report.skipped.push_back({face_id, std::move(fault.reason)});
   return {};

@@ -28,9 +28,9 @@ struct FaceFault {
 [[nodiscard]] FaceFault vertex_not_finite(const std::string& vertex,
                                           const std::array<double, 3>& position);
 
-/// The error of a bad face. `skips_bad`: see ImportOptions.
+/// The error of a bad face. `command`: see ImportOptions.
 [[nodiscard]] Error error_of_face(const std::string& file, std::uint64_t face,
-                                  const FaceFault& fault, const char* skips_bad);
+                                  const FaceFault& fault, const char* command);
 
 /// Reports a bad face: an error with file and face, or with skip_bad an entry of the report.
 Status report_fault(FaceFault fault, std::uint32_t face_id, const std::string& file,

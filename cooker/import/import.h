@@ -25,7 +25,7 @@ struct ImportOptions {
   /// report their numbers, instead of refusing the file.
   bool skip_bad = false;
   /// [none] The command whose option --skip-bad the error of such a face names.
-  const char* skips_bad = nullptr;
+  const char* command = nullptr;
   /// [kF32] Precision of positions. kF64 keeps all digits of OBJ, OFF, PLY and text STL files; in
   /// other formats it only makes node transforms more exact.
   Precision precision = Precision::kF32;

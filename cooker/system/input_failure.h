@@ -10,13 +10,12 @@
 
 namespace boxtree::cooker {
 
-/// read_failure(), of an empty name that it is one, and of a missing file whose name counts from
-/// the current folder which one that is: a build's is not its user's.
+/// read_failure(), and of a missing file whose name counts from the current folder which one that
+/// is: a build's is not its user's.
 [[nodiscard]] inline Error input_failure(const std::string& path, int reason,
                                          const std::string& named_in = {}) {
-  if (path.empty()) return {Errc::kFileNotFound, "expected the name of a file, found an empty one"};
   Error error = read_failure(path, reason, named_in);
-  const bool is_relative = named_in.empty() && !path.starts_with('/');
+  const bool is_relative = named_in.empty() && !path.empty() && !path.starts_with('/');
   if (error.code != Errc::kFileNotFound || !is_relative) return error;
   std::error_code unknown;
   const std::filesystem::path folder = std::filesystem::current_path(unknown);

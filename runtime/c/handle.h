@@ -44,9 +44,7 @@ class Allocation {
   template <class Handle>
   static void release(Handle* handle) noexcept {
     if (handle == nullptr) return;
-    const Memory memory = handle->allocation.memory_;
-    handle->~Handle();
-    boxtree::release(&memory, handle, sizeof(Handle), alignof(Handle));
+    destroy(handle);
   }
 
  private:
@@ -58,16 +56,22 @@ class Allocation {
 struct bxt_file {
   boxtree::File inside;
   boxtree::c::Allocation allocation;
+
+  [[nodiscard]] const boxtree::Memory& memory() const noexcept { return allocation.memory(); }
 };
 
 struct bxt_tree {
   boxtree::Tree inside;
   boxtree::c::Allocation allocation;
+
+  [[nodiscard]] const boxtree::Memory& memory() const noexcept { return allocation.memory(); }
 };
 
 #if BOXTREE_HAS_SCENE_QUERIES
 struct bxt_scene {
   boxtree::Scene inside;
   boxtree::c::Allocation allocation;
+
+  [[nodiscard]] const boxtree::Memory& memory() const noexcept { return allocation.memory(); }
 };
 #endif

@@ -84,7 +84,7 @@ bxt_status bxt_scene_assemble(const bxt_tree* const* trees, size_t tree_count,
   return guarded(error, [&] {
     Array<Tree> given_trees(&allocation.memory());
     for (std::size_t i = 0; i < tree_count; ++i) {
-      if (trees[i] == nullptr) return refuse_null(error, "trees: NULL");
+      if (trees[i] == nullptr) return refuse_null(error, "trees: one");
       given_trees.push_back(trees[i]->inside);
     }
     Array<PlacedTree> placed(&allocation.memory());

@@ -28,7 +28,7 @@ Result<File> File::open(Bytes memory, const OpenOptions& options) {
 
 File::File(std::unique_ptr<const OpenFile, Ends> open) noexcept : open_(std::move(open)) {}
 void File::Ends::operator()(const OpenFile* open) const noexcept {
-  OpenFile::end(open);
+  destroy(open);
 }
 File::File(File&&) noexcept = default;
 File& File::operator=(File&&) noexcept = default;

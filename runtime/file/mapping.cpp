@@ -4,7 +4,8 @@
 
 #include <utility>
 
-#include "format/container.h"
+#include "format/limits.h"
+#include "format/memory.h"
 #include "format/message.h"
 
 namespace boxtree {

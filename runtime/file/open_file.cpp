@@ -18,13 +18,6 @@ OpenFile::Owner OpenFile::make(const Memory& memory) {
   return Owner(::new (place) OpenFile(memory));
 }
 
-void OpenFile::end(const OpenFile* open) noexcept {
-  const Memory memory = open->memory_;
-  auto* const place = const_cast<OpenFile*>(open);  // allocated here, as one that changes
-  place->~OpenFile();
-  release(&memory, place, sizeof(OpenFile), alignof(OpenFile));
-}
-
 Result<File> OpenFile::open(Mapping owned, const OpenOptions& options) {
   Owner file = make(options.memory);
   file->bytes_ = owned.bytes();

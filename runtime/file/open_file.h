@@ -28,9 +28,6 @@ class OpenFile {
   /// The inside of a File.
   [[nodiscard]] static const OpenFile& of(const File& file) noexcept { return *file.open_; }
 
-  /// Gives the memory back that an inside took; the last thing that is done with it.
-  static void end(const OpenFile* open) noexcept;
-
   /// What all that it owns is allocated from.
   [[nodiscard]] const Memory& memory() const noexcept { return memory_; }
   [[nodiscard]] Bytes bytes() const noexcept { return bytes_; }

@@ -30,8 +30,8 @@ class BoundScene {
   static Result<Scene> bind(const File& file, const SceneOptions& options);
   static Result<Scene> assemble(std::span<const Tree> trees, std::span<const PlacedTree> instances,
                                 std::span<const SceneLayer> layers, const Memory& memory);
-  /// Gives the memory back that an inside took; the last thing that is done with it.
-  static void end(BoundScene* scene) noexcept;
+  /// What all that it owns is allocated from.
+  [[nodiscard]] const Memory& memory() const noexcept { return memory_; }
 
   /// The inside of a Scene.
   [[nodiscard]] static const BoundScene& of(const Scene& scene) noexcept { return *scene.bound_; }

@@ -18,7 +18,7 @@ Result<Scene> Scene::assemble(std::span<const Tree> trees, std::span<const Place
 
 Scene::Scene(std::unique_ptr<BoundScene, Ends> bound) noexcept : bound_(std::move(bound)) {}
 void Scene::Ends::operator()(BoundScene* bound) const noexcept {
-  BoundScene::end(bound);
+  destroy(bound);
 }
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;

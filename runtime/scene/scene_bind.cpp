@@ -16,12 +16,6 @@ BoundScene::Owner BoundScene::make(const Memory& memory) {
   return Owner(::new (place) BoundScene(memory));
 }
 
-void BoundScene::end(BoundScene* scene) noexcept {
-  const Memory memory = scene->memory_;
-  scene->~BoundScene();
-  release(&memory, scene, sizeof(BoundScene), alignof(BoundScene));
-}
-
 Result<Scene> BoundScene::bind(const File& file, const SceneOptions& options) {
   const DefaultFloatState state;
   Owner scene = make(options.memory);

@@ -205,7 +205,7 @@ TEST_F(ImportErrorTest, NoFaces) {
 
 TEST_F(ImportErrorTest, NotFiniteNamesVertexAndFace) {
   const std::string mesh = ply("0 0 0\n1 0 0\n0 1 0\nnan 0 0\n", "3 0 1 2\n3 0 3 2\n", 4, 2);
-  const Error error = fail("a.ply", mesh, {.skips_bad = "cook"});
+  const Error error = fail("a.ply", mesh, {.command = "cook"});
   EXPECT_EQ(error.code, Errc::kMeshNotFinite);
   EXPECT_TRUE(
       has(error.detail,
