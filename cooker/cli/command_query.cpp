@@ -39,7 +39,8 @@ namespace {
 
 struct Arguments {
   std::filesystem::path file;
-  std::string tree;  // empty: the scene of the file, or else its first tree
+  std::string tree;   // empty: the scene of the file, or else its first tree
+  std::string scene;  // a tree of the scene to query; empty: the file's
   std::vector<std::string> moves;
   std::filesystem::path mesh;
   std::filesystem::path batch;
@@ -241,6 +242,21 @@ class StillSceneWarning {
   bool is_told_ = false;
 };
 
+// The file that `tree` came in, whose bytes are those of `pack`; one with a scene. Errors: those of
+// find_tree and File::member, and kNoScene.
+Result<File> scene_around(const File& pack, const std::string& tree) {
+  const Result<std::uint32_t> index = find_tree(pack, {tree});
+  if (!index) return index.error();
+  Result<Member> member = pack.member(*index);
+  if (!member) return member.error();
+  if (!member->file.has_scene()) {
+    return Error{Errc::kNoScene, fmt::format("--scene {0}: this tree was cooked without --scene; "
+                                             "--tree {0} queries it",
+                                             tree)};
+  }
+  return std::move(member->file);
+}
+
 // Without a batch, `defaults` is the query.
 int run(const Arguments& arguments, const RequestDefaults& defaults) {
   const bool is_file =
@@ -248,8 +264,15 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
   if (is_file && is_standard_stream(arguments.batch)) {
     return usage("query: standard input is the file or the batch, not both");
   }
+  std::optional<File> pack;  // outlives its member
   Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
+  if (!arguments.scene.empty()) {
+    pack = std::move(opened->file);
+    Result<File> member = scene_around(*pack, arguments.scene);
+    if (!member) return fail(in_queried_file(arguments, {}, member.error()));
+    opened->file = std::move(*member);
+  }
   const File& file = opened->file;
   if (!arguments.moves.empty() && (!file.has_scene() || !arguments.tree.empty())) {
     return usage("query: --move is for instances of a scene");
@@ -368,7 +391,8 @@ class OptionFields {
               tree.pose = *pose;
               return std::string();
             },
-            "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row")
+            "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row "
+            "[0,0,0]")
         ->type_name("POSE");
     command_
         .add_option("--tree2", tree.tree.text,
@@ -499,10 +523,16 @@ void add_query_command(Command& program, int& status) {
       .add_file("FILE", arguments->file, Values::kCookedFiles,
                 "The file to query; - is standard input")
       ->needed();
+  Option* tree =
+      command
+          .add_option("--tree", arguments->tree,
+                      "Which tree, by name or number [the scene of the file, or else tree 0]")
+          ->type_name("TREE");
   command
-      .add_option("--tree", arguments->tree,
-                  "Which tree, by name or number [the scene of the file, or else tree 0]")
-      ->type_name("TREE");
+      .add_option("--scene", arguments->scene,
+                  "Of a pack: the scene with this tree, by name or number")
+      ->type_name("TREE")
+      ->excludes(tree);
   command
       .add_option(
           "--move", arguments->moves,

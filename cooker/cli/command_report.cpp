@@ -64,6 +64,12 @@ std::array<Output, 4> outputs_of(const Arguments& arguments) {
            {arguments.approximate_csv, "--csv-approximate"}}};
 }
 
+bool has_output(const Arguments& arguments) {
+  const auto outputs = outputs_of(arguments);
+  return std::any_of(outputs.begin(), outputs.end(),
+                     [](const Output& output) { return !output.path.empty(); });
+}
+
 // How many of the outputs are standard output, which the summary must leave alone.
 std::ptrdiff_t count_standard_outputs(const Arguments& arguments) {
   const auto outputs = outputs_of(arguments);
@@ -403,6 +409,9 @@ int run(const Arguments& arguments) {
   }
   if (count_standard_outputs(arguments) + (arguments.json ? 1 : 0) > 1) {
     return usage("report: standard output takes one of the page, --json, --json-out and CSV");
+  }
+  if (arguments.quiet && !arguments.json && !has_output(arguments)) {
+    return usage("report: with --quiet and no output nothing is told; expected -o FILE.html");
   }
   int status = 0;
   run_on_threads(arguments.jobs, [&] {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -102,6 +104,15 @@ void add_owners(const Command& command, const std::string& option,
   }
 }
 
+// "; did you mean '--output'?" of "--outptu" or "--out", the beginning of one option alone; empty
+// if nothing is near.
+std::string meant_option(const std::string& word, const std::vector<std::string>& names) {
+  std::vector<std::string> longer;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(longer),
+               [&](const std::string& name) { return name.starts_with(word); });
+  return longer.size() == 1 ? "; did you mean '" + longer.front() + "'?" : suggestion(word, names);
+}
+
 // An option that nobody took.
 std::string unknown_option(const Command& command, const std::string& word) {
   const std::string start = "'" + word + "' is ";
@@ -117,7 +128,11 @@ std::string unknown_option(const Command& command, const std::string& word) {
   if (has_option(*program, word)) {
     return start + "an option of " + name + " alone; use '" + name + " " + word + "'";
   }
-  const std::string meant = suggestion(word, option_names(command));
+  if (std::error_code ignored;
+      word.substr(0, 2) != "--" && std::filesystem::exists(named_path(word), ignored)) {
+    return start + "no option; a file of that name is ./" + word;
+  }
+  const std::string meant = meant_option(word, option_names(command));
   if (!meant.empty() || command.parent() == nullptr) return start + "no option" + meant;
   for (const Command* other : command.parent()->commands()) {
     if (has_option(*other, word)) owners.push_back(other->name());

@@ -256,9 +256,9 @@ grep -q 'matrix: expected 16 numbers between commas, found "1,2,3"' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix inf,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1
 grep -q 'invalid_query: cube.bxt: frustum: planes: expected a matrix of finite numbers, .*found matrix \[inf,0,0,0,' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --instances
-same "$(cat err)" 'boxtree: no_scene: cube.bxt: instances are those of a scene, and this is one tree; leave --instances out for its faces, or query a file of cook --scene, without --tree (boxtree split takes one out of a pack)'
+same "$(cat err)" 'boxtree: no_scene: cube.bxt: instances are those of a scene, and this is one tree; leave --instances out for its faces, or query a file of cook --scene, without --tree (of a pack, with --scene TREE)'
 expect 1 "$boxtree" query cube.bxt contacts
-same "$(cat err)" 'boxtree: no_scene: cube.bxt: contacts are those of a scene, and this is one tree; of a tree use collide or pair, or query a file of cook --scene, without --tree (boxtree split takes one out of a pack)'
+same "$(cat err)" 'boxtree: no_scene: cube.bxt: contacts are those of a scene, and this is one tree; of a tree use collide or pair, or query a file of cook --scene, without --tree (of a pack, with --scene TREE)'
 # The error of a hull's file is told by its name, not by that of the tree.
 for kind in collide 'cast --direction 0,0,-1'; do
   # shellcheck disable=SC2086
@@ -569,6 +569,12 @@ misspelt "boxtree: usage: query ray: '--orgin' is no option; did you mean '--ori
 See 'boxtree query ray --help'." query cube.bxt ray --orgin 1,2,3
 misspelt "boxtree: usage: cook: '--outptu' is no option; did you mean '--output'?
 See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
+misspelt "boxtree: usage: cook: '--out' is no option; did you mean '--output'?
+See 'boxtree cook --help'." cook cube.obj --out out.bxt
+cp cube.obj ./-x.obj
+misspelt "boxtree: usage: cook: '-x.obj' is no option; a file of that name is ./-x.obj
+See 'boxtree cook --help'." cook -x.obj -o out.bxt
+rm ./-x.obj
 # Found by a newcomer: it was told to mean itself.
 misspelt "boxtree: usage: cook: '--version' is an option of boxtree alone; use 'boxtree --version'
 See 'boxtree cook --help'." cook --version
@@ -749,6 +755,7 @@ rm utpu utput
 refused_words 'cook: -o, --output FILE is required; did you mean -o d.bxt?' cook cube.obj d.bxt
 refused_words 'export: -o, --output FILE is required; did you mean -o d.glb?' export cube.bxt d.glb
 refused_words 'report: d.html is no mesh; did you mean -o d.html?' report cube.obj d.html
+refused_words 'report: with --quiet and no output nothing is told; expected -o FILE.html' report cube.obj -q
 refused_words 'report: d.csv is no mesh; did you mean --csv d.csv?' report cube.obj d.csv --quick
 refused_words 'report: d.json is no mesh; did you mean --json-out d.json?' report cube.obj d.json
 refused_words 'cook: -o, --output FILE is required' cook cube.obj cube.obj

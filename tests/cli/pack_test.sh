@@ -70,6 +70,22 @@ for at in 0.3,0.1 -0.2,0.5 0,-0.9; do
   cmp alone packed
 done
 same "$("$boxtree" query all.bxt --tree tree point --at 3,1,0 --json)" "$("$boxtree" query a/tree.bxt point --at 3,1,0 --json)"
+# A scene is queried in the pack, by any of its trees.
+ray=(ray --origin 0.5,0.5,9 --direction 0,0,-1)
+part=$(jq -r '[.trees[] | select(.member.has_scene) | .name][0]' info.json)
+"$boxtree" query a/level.bxt "${ray[@]}" --json >alone
+"$boxtree" query all.bxt --scene "$part" "${ray[@]}" --json >packed
+cmp alone packed
+grep -q '"instance"' packed
+"$boxtree" query a/level.bxt --scene 0 "${ray[@]}" --json | cmp alone -
+echo '{"kind":"ray","origin":[0.5,0.5,9],"direction":[0,0,-1]}' >batch
+same "$("$boxtree" query all.bxt --scene "$part" --batch batch | jq .answers)" "$("$boxtree" query a/level.bxt --batch batch | jq .answers)"
+expect 1 "$boxtree" query all.bxt --scene rock "${ray[@]}"
+same "$(cat err)" 'boxtree: no_scene: all.bxt: --scene rock: this tree was cooked without --scene; --tree rock queries it'
+expect 1 "$boxtree" query all.bxt --scene rok "${ray[@]}"
+grep -q "did you mean 'rock'" err
+expect 1 "$boxtree" query all.bxt --scene rock --tree rock "${ray[@]}"
+same "$(head -1 err)" 'boxtree: usage: query: --scene excludes --tree'
 expect 1 "$boxtree" query all.bxt --tree rok ray --origin 0,0,9 --direction 0,0,-1
 grep -q "did you mean 'rock'" err
 expect 0 "$boxtree" export all.bxt --tree rock -o rock.glb
