@@ -100,7 +100,7 @@ def find_lines(boxtree):
                 break
             assert seconds < GIVE_UP_AFTER, f"nothing printed in {seconds:.3f} s"
             count *= 2
-        done = subprocess.run(report(boxtree, count, "-q", *options), stdout=subprocess.DEVNULL,
+        done = subprocess.run(report(boxtree, count, "-q", "-o", "page.html", *options), stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, text=True, check=True)
         assert done.stderr == "", f"not quiet: {done.stderr!r}"
 

@@ -238,7 +238,7 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2' >half.obj
 expect 0 "$boxtree" cook half.obj -o half.bxt
 same "$(cat err)" 'boxtree: warning: half.obj: the last line has no end and is half a face, which is left out, as if the file was cut short'
 same "$(grep -c skipped out)" 0
-expect 0 "$boxtree" report cut.obj --quick --no-times --quiet
+expect 0 "$boxtree" report cut.obj --quick --no-times --quiet -o cut.html
 same "$(cat err)" 'boxtree: warning: cut.obj: the last line has no end, as if the file was cut short'
 expect 1 "$boxtree" cook crate.obj -o out.bxt --depfile -
 
