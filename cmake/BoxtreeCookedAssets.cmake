@@ -1,9 +1,10 @@
-# boxtree_add_cooked_assets(TARGET target MESHES mesh... [OPTIONS option...] [OUTPUT_DIR dir]
-#                           [DEFINITION name] [CACHE dir|url])
+# boxtree_add_cooked_assets(TARGET target [MESHES mesh...] [PROFILES profile...] [OPTIONS option...]
+#                           [OUTPUT_DIR dir] [DEFINITION name] [CACHE dir|url])
 #
-# Cooks each mesh into OUTPUT_DIR/NAME.bxt before `target`, or what links it, is built. A depfile lists
-# every file that a mesh refers to: touching one recooks just the meshes that read it.
+# Cooks each mesh, and each profile, into OUTPUT_DIR/NAME.bxt before `target`, or what links it, is built. A
+# depfile lists every file that a mesh or a profile refers to: touching one recooks just what reads it.
 #
+#   PROFILES    those that say themselves what to cook, by `source` or [[instance]]
 #   TARGET      any target; what links an INTERFACE library gets its definition and its order of building
 #   OPTIONS     passed to `boxtree cook`, with --jobs 1 unless they have --jobs; generator expressions are evaluated
 #   OUTPUT_DIR  [default: the current binary directory, which a relative one is below]
@@ -76,27 +77,27 @@ function(boxtree_define_asset_dir target name dir)
   set_target_properties(${target} PROPERTIES BOXTREE_DEFINED_${name} ${dir})
 endfunction()
 
-# Called when the current folder has been read, since a later command may make the mesh. A warning, since one of
+# Called when the current folder has been read, since a later command may make the file. A warning, since one of
 # another folder may, too.
-function(boxtree_expect_mesh mesh)
-  get_source_file_property(is_generated "${mesh}" GENERATED)
-  if(NOT is_generated AND NOT EXISTS "${mesh}")
-    message(WARNING "boxtree_add_cooked_assets: ${mesh} is not there, and no command of this folder makes it; "
-                    "expected a mesh file. Relative names are below ${CMAKE_CURRENT_SOURCE_DIR}")
+function(boxtree_expect_input input what)
+  get_source_file_property(is_generated "${input}" GENERATED)
+  if(NOT is_generated AND NOT EXISTS "${input}")
+    message(WARNING "boxtree_add_cooked_assets: ${input} is not there, and no command of this folder makes it; "
+                    "expected a ${what} file. Relative names are below ${CMAKE_CURRENT_SOURCE_DIR}")
   endif()
 endfunction()
 
 # Ends with WHY, a sentence, and how to call the function.
 function(boxtree_refuse_call why)
-  message(FATAL_ERROR "boxtree_add_cooked_assets: ${why} Expected boxtree_add_cooked_assets(TARGET target MESHES mesh... "
-                      "[OPTIONS option...] [OUTPUT_DIR dir] [DEFINITION name] [CACHE dir|url])")
+  message(FATAL_ERROR "boxtree_add_cooked_assets: ${why} Expected boxtree_add_cooked_assets(TARGET target [MESHES mesh...] "
+                      "[PROFILES profile...] [OPTIONS option...] [OUTPUT_DIR dir] [DEFINITION name] [CACHE dir|url])")
 endfunction()
 
 # Sets RESULT to the keyword that begins as WORD does, by three letters or more, or to nothing.
 function(boxtree_nearest_keyword result word)
   set(nearest)
   set(most 2)
-  foreach(keyword TARGET MESHES OPTIONS OUTPUT_DIR DEFINITION CACHE)
+  foreach(keyword TARGET MESHES PROFILES OPTIONS OUTPUT_DIR DEFINITION CACHE)
     string(LENGTH ${keyword} length)
     while(length GREATER most)
       string(SUBSTRING ${keyword} 0 ${length} start)
@@ -110,13 +111,13 @@ function(boxtree_nearest_keyword result word)
   set(${result} ${nearest} PARENT_SCOPE)
 endfunction()
 
-# A keyword that the function does not know is a value of the list before it. A mesh has an ending, so a name in
+# A keyword that the function does not know is a value of the list before it. An input has an ending, so a name in
 # capitals is none; as the value of an option it may be meant, unless it begins as a keyword does. Nor is a keyword in
 # small letters.
 function(boxtree_refuse_unknown_keywords list values)
   foreach(value IN LISTS values)
     string(TOUPPER "${value}" upper)
-    if(NOT value STREQUAL upper AND upper MATCHES "^(TARGET|MESHES|OPTIONS|OUTPUT_DIR|DEFINITION|CACHE)$")
+    if(NOT value STREQUAL upper AND upper MATCHES "^(TARGET|MESHES|PROFILES|OPTIONS|OUTPUT_DIR|DEFINITION|CACHE)$")
       boxtree_refuse_call("'${value}' in ${list} is no keyword; did you mean ${upper}?")
     endif()
     if(NOT value MATCHES "^[A-Z][A-Z_]+$")
@@ -125,18 +126,21 @@ function(boxtree_refuse_unknown_keywords list values)
     boxtree_nearest_keyword(nearest ${value})
     if(nearest)
       boxtree_refuse_call("'${value}' in ${list} is no keyword; did you mean ${nearest}?")
-    elseif(list STREQUAL "MESHES")
-      boxtree_refuse_call("'${value}' in ${list} is neither a keyword nor the name of a mesh.")
+    elseif(NOT list STREQUAL "OPTIONS")
+      boxtree_refuse_call("'${value}' in ${list} is neither a keyword nor the name of a file.")
     endif()
   endforeach()
 endfunction()
 
 function(boxtree_add_cooked_assets)
-  cmake_parse_arguments(PARSE_ARGV 0 ARG "" "TARGET;OUTPUT_DIR;DEFINITION;CACHE" "MESHES;OPTIONS")
-  foreach(mesh IN LISTS ARG_MESHES)
-    if(mesh MATCHES ";")
-      boxtree_refuse_call("MESHES has '${mesh}' in one piece; a list stands there without quotes.")
-    endif()
+  cmake_parse_arguments(PARSE_ARGV 0 ARG "" "TARGET;OUTPUT_DIR;DEFINITION;CACHE" "MESHES;PROFILES;OPTIONS")
+  foreach(list MESHES PROFILES)
+    foreach(input IN LISTS ARG_${list})
+      if(input MATCHES ";")
+        boxtree_refuse_call("${list} has '${input}' in one piece; a list stands there without quotes.")
+      endif()
+    endforeach()
+    boxtree_refuse_unknown_keywords(${list} "${ARG_${list}}")
   endforeach()
   foreach(keyword OUTPUT_DIR DEFINITION CACHE)
     if(keyword IN_LIST ARG_KEYWORDS_MISSING_VALUES)
@@ -146,7 +150,6 @@ function(boxtree_add_cooked_assets)
   if(ARG_DEFINITION AND NOT ARG_DEFINITION MATCHES "^[A-Za-z_][A-Za-z0-9_]*$")
     boxtree_refuse_call("DEFINITION is '${ARG_DEFINITION}', which is no name of a macro.")
   endif()
-  boxtree_refuse_unknown_keywords(MESHES "${ARG_MESHES}")
   boxtree_refuse_unknown_keywords(OPTIONS "${ARG_OPTIONS}")
   if(ARG_UNPARSED_ARGUMENTS)
     list(GET ARG_UNPARSED_ARGUMENTS 0 word)
@@ -159,8 +162,8 @@ function(boxtree_add_cooked_assets)
   if(NOT ARG_TARGET)
     boxtree_refuse_call("TARGET is missing.")
   endif()
-  if(NOT ARG_MESHES)
-    boxtree_refuse_call("MESHES of target ${ARG_TARGET} is missing or an empty list.")
+  if(NOT ARG_MESHES AND NOT ARG_PROFILES)
+    boxtree_refuse_call("MESHES or PROFILES of target ${ARG_TARGET} is missing or an empty list.")
   endif()
   if(NOT TARGET ${ARG_TARGET})
     message(FATAL_ERROR "boxtree_add_cooked_assets: there is no target ${ARG_TARGET}; call add_executable or add_library "
@@ -220,28 +223,34 @@ function(boxtree_add_cooked_assets)
   else()
     set(call_count 1)
   endif()
-  foreach(mesh IN LISTS ARG_MESHES)
-    get_filename_component(mesh ${mesh} ABSOLUTE)
-    get_filename_component(name ${mesh} NAME_WLE)
+  foreach(input IN LISTS ARG_MESHES ARG_PROFILES)
+    set(what mesh)
+    set(option)
+    if(input IN_LIST ARG_PROFILES)
+      set(what profile)
+      set(option --profile)
+    endif()
+    get_filename_component(input ${input} ABSOLUTE)
+    get_filename_component(name ${input} NAME_WLE)
     set(output ${dir}/${name}.bxt)
     # What is cooked into it, by which options and target, all over the project.
-    get_property(known_mesh GLOBAL PROPERTY "BOXTREE_MESH_OF_${output}")
+    get_property(known_input GLOBAL PROPERTY "BOXTREE_INPUT_OF_${output}")
     get_property(known_options GLOBAL PROPERTY "BOXTREE_OPTIONS_OF_${output}")
     get_property(known_target GLOBAL PROPERTY "BOXTREE_TARGET_OF_${output}")
-    if(known_mesh AND NOT known_mesh STREQUAL mesh)
-      message(FATAL_ERROR "boxtree_add_cooked_assets: ${known_mesh} and ${mesh} would both be cooked into "
+    if(known_input AND NOT known_input STREQUAL input)
+      message(FATAL_ERROR "boxtree_add_cooked_assets: ${known_input} and ${input} would both be cooked into "
                           "${output}: give one of them another OUTPUT_DIR")
-    elseif(known_mesh AND NOT "${known_options}" STREQUAL "${ARG_OPTIONS}")
-      message(FATAL_ERROR "boxtree_add_cooked_assets: ${mesh} is cooked into ${output} with the options "
+    elseif(known_input AND NOT "${known_options}" STREQUAL "${ARG_OPTIONS}")
+      message(FATAL_ERROR "boxtree_add_cooked_assets: ${input} is cooked into ${output} with the options "
                           "'${known_options}' already; to cook it with '${ARG_OPTIONS}', too, give one of them "
                           "another OUTPUT_DIR")
-    elseif(known_mesh)
+    elseif(known_input)
       if(NOT known_target STREQUAL assets_target)
         list(APPEND shared_targets ${known_target})
       endif()
       continue()
     endif()
-    set_property(GLOBAL PROPERTY "BOXTREE_MESH_OF_${output}" "${mesh}")
+    set_property(GLOBAL PROPERTY "BOXTREE_INPUT_OF_${output}" "${input}")
     set_property(GLOBAL PROPERTY "BOXTREE_OPTIONS_OF_${output}" "${ARG_OPTIONS}")
     set_property(GLOBAL PROPERTY "BOXTREE_TARGET_OF_${output}" "${assets_target}")
     # As CMake names what it builds: below the folder of the build, wherever that is.
@@ -249,11 +258,11 @@ function(boxtree_add_cooked_assets)
     if(title MATCHES "^\\.\\.(/|$)")
       set(title ${output})
     endif()
-    cmake_language(EVAL CODE "cmake_language(DEFER CALL boxtree_expect_mesh [[${mesh}]])")
+    cmake_language(EVAL CODE "cmake_language(DEFER CALL boxtree_expect_input [[${input}]] ${what})")
     add_custom_command(
       OUTPUT ${output}
-      COMMAND ${tool} cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${jobs} ${cache} ${ARG_OPTIONS}
-      DEPENDS ${mesh} ${tool}
+      COMMAND ${tool} cook ${option} ${input} -o ${output} --depfile ${output}.d --quiet ${jobs} ${cache} ${ARG_OPTIONS}
+      DEPENDS ${input} ${tool}
       DEPFILE ${output}.d
       COMMENT "Cooking ${title}"
       COMMAND_EXPAND_LISTS # an option that a generator expression leaves empty is none
