@@ -68,7 +68,7 @@ bxt_status fail(bxt_error* error, Errc code, std::string_view detail,
   // More than one text in a row without an allocation: what is missing is memory, say.
   const std::size_t capacity = stated_size(error) - offsetof(bxt_error, message);
   for (const std::string_view text : texts) {
-    const std::size_t at = std::min(error->message_length, capacity - 1);
+    const std::size_t at = std::min<std::size_t>(error->message_length, capacity - 1);
     copy_text(text, error->message + at, capacity - at);
     error->message_length += text.size();
   }
