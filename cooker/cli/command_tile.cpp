@@ -44,6 +44,10 @@ int run(Arguments& arguments) {
   if (const std::string fault = mesh_name_fault(options.jobs, ".jsonl"); !fault.empty()) {
     return usage("tile: " + fault);
   }
+  if (options.jobs.extension() == ".bxt") {
+    return usage("tile: -o names the manifest, for cook --manifest: expected " +
+                 fs::path(options.jobs).replace_extension(".jsonl").string());
+  }
   if (options.folder.empty()) {
     options.folder = options.jobs;
     options.folder.replace_extension();
@@ -80,9 +84,9 @@ int run(Arguments& arguments) {
                {"largest", report->largest},
                {"readings", report->readings}});
   } else if (!arguments.quiet) {
-    fmt::print("{}: {} in {}, {} written; cook them with cook --manifest\n",
+    fmt::print("{}: {} in {}, {} written; cook them with cook --manifest {}\n",
                shown(options.jobs.string()), counted(report->triangles, "triangle"),
-               counted(report->tiles, "tile"), report->written);
+               counted(report->tiles, "tile"), report->written, shown(options.jobs.string()));
   }
   return 0;
 }

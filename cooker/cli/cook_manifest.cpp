@@ -56,6 +56,13 @@ fs::path journal_of(const FarmArguments& farm, const Shard& shard) {
   return journal;
 }
 
+// A journal is added to: what is none would be damaged. Error: kWriteFailed.
+Status check_journal(const fs::path& journal, const fs::path& manifest) {
+  if (Status status = check_replaced(journal, OutputKind::kJournal); !status) return status;
+  const Output output{journal};
+  return check_outputs({&output, 1}, {&manifest, 1});
+}
+
 // What became of one job.
 struct Line {
   std::size_t job;
@@ -257,9 +264,13 @@ class Run {
 int cook_manifest(const ManifestRun& run) {
   const Result<ManifestJobs> jobs = ManifestJobs::read(run.farm.manifest);
   if (!jobs) return fail(jobs.error());
+  if (jobs->size() == 0) warn(input_name(run.farm.manifest) + ": the manifest has no job");
   const Shard shard = *shard_from(run.farm.shard);  // was checked when it was parsed
   std::optional<Journal> journal;
   if (const fs::path path = journal_of(run.farm, shard); !path.empty()) {
+    if (Status status = check_journal(path, run.farm.manifest); !status) {
+      return usage("cook: --journal " + status.error().detail);
+    }
     Result<Journal> opened = Journal::open(path);
     if (!opened) return fail(opened.error());
     journal.emplace(std::move(*opened));

@@ -36,12 +36,17 @@ void complain(std::string_view what) noexcept {
 
 namespace {
 
-// Whether the message ends with a reason of the system's that another try meets again.
+// Whether the message ends with a reason that another try meets again: of the system's, or that
+// the name is that of something else.
 bool has_lasting_reason(const Error& error) {
-  const auto ends_it = [&](int reason) {
-    return error.detail.ends_with(std::generic_category().message(reason));
-  };
-  return std::ranges::any_of(std::array{EACCES, EPERM, EROFS, EISDIR, ENAMETOOLONG}, ends_it);
+  static constexpr std::array<std::string_view, 5> kOfNames = {
+      "not a regular file", "expected the name of a file", "not a mesh file", "name another",
+      "name another output"};
+  const auto ends_it = [&](std::string_view reason) { return error.detail.ends_with(reason); };
+  return std::ranges::any_of(kOfNames, ends_it) ||
+         std::ranges::any_of(
+             std::array{EACCES, EPERM, EROFS, EISDIR, ENOTDIR, ELOOP, ENAMETOOLONG},
+             [&](int reason) { return ends_it(std::generic_category().message(reason)); });
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <unistd.h>
 #include <vector>
 
+#include "cooker/farm/sha256.h"
 #include "cooker/system/write_all.h"
 #include "cooker/system/write_failure.h"
 #include "cooker/text/number_of.h"
@@ -62,7 +63,8 @@ struct CachedFile {
   fs::file_time_type used;
 };
 
-// Other processes may remove files at the same time: what is gone is left out.
+// Those that are called by a digest: what else lies there is not the cache's. Other processes may
+// remove files at the same time: what is gone is left out.
 std::vector<CachedFile> list_files(const fs::path& folder) {
   std::vector<CachedFile> files;
   for (const char* kind : {"ac", "cas"}) {
@@ -71,7 +73,8 @@ std::vector<CachedFile> list_files(const fs::path& folder) {
          entry.increment(error)) {
       std::error_code gone;
       // Those above the folders of two digits are on their way in.
-      if (entry.depth() == 0 || !entry->is_regular_file(gone) || gone) continue;
+      if (entry.depth() == 0 || !digest_of(entry->path().filename().string())) continue;
+      if (!entry->is_regular_file(gone) || gone) continue;
       const std::uint64_t bytes = entry->file_size(gone);
       const fs::file_time_type used = entry->last_write_time(gone);
       if (!gone) files.push_back({entry->path(), bytes, used});

@@ -33,6 +33,10 @@ class LineReader {
   explicit LineReader(std::string place) : place_(std::move(place)) {}
 
   Result<ManifestLine> read(std::string_view text, std::size_t number) {
+    if (const std::size_t start = text.find_first_not_of(" \t");
+        start != std::string_view::npos && text[start] == '[') {
+      return fault("expected a JSON object in each line, found [; no list stands around them");
+    }
     const ParsedJson parsed = parse_json(text, kDeepest);
     if (parsed.fault == ParsedJson::Fault::kTooDeep) {
       return fault("expected arrays of texts, found arrays or objects in them");
@@ -91,8 +95,8 @@ class LineReader {
     const Json* const values = object.find(key);
     if (values == nullptr) return {};
     if (!values->is_array()) {
-      return fault(
-          fmt::format("{}: expected an array of texts, found {}", key, values->type_name()));
+      return fault(fmt::format("{0}: expected an array of texts, as \"{0}\": [\"...\"], found {1}",
+                               key, values->type_name()));
     }
     for (const Json& value : *values) {
       if (Status status = check_text(value, key); !status) return status;

@@ -152,7 +152,8 @@ class World {
                         what, bytes, options_.memory)};
   }
 
-  // A manifest is written over none but a manifest.
+  // A manifest is written over none but that of tiles, each of which says what its faces are
+  // called.
   [[nodiscard]] Status check_jobs() const {
     const Status distinct = check_outputs(std::array{Output{options_.jobs}}, options_.sources);
     if (!distinct) return distinct;
@@ -160,10 +161,15 @@ class World {
     if (!fs::exists(options_.jobs, error)) return {};
     const Result<std::string> text = read_whole_file(options_.jobs, kMaxManifestBytes);
     if (!text) return text.error();
-    if (parse_manifest(*text, options_.jobs.string())) return {};
-    return Error{Errc::kWriteFailed, options_.jobs.string() +
-                                         ": expected a manifest, or no file, found another one; it "
-                                         "would be lost: remove it, or name another"};
+    const auto jobs = parse_manifest(*text, options_.jobs.string());
+    const auto is_tile = [](const ManifestLine& job) {
+      return std::find(job.options.begin(), job.options.end(), kTileFaceIds) != job.options.end();
+    };
+    if (jobs && std::all_of(jobs->begin(), jobs->end(), is_tile)) return {};
+    return Error{Errc::kWriteFailed,
+                 options_.jobs.string() +
+                     ": expected a manifest of tiles, or no file, found another "
+                     "one; it would be lost: remove it, or name another"};
   }
 
   // Calls visit(face, triangles) for each face of the world, with its number there.

@@ -90,6 +90,14 @@ bool is_page(std::string_view start) {
   return false;
 }
 
+// The first line of a journal is that of an output or of a file, and may be cut short.
+bool is_journal(std::string_view start) {
+  for (const std::string_view mark : {R"({"file":")", R"({"output":")"}) {
+    if (start.starts_with(mark) || mark.starts_with(start)) return true;
+  }
+  return false;
+}
+
 bool begins_as(OutputKind kind, std::string_view start) {
   switch (kind) {
     case OutputKind::kCooked:
@@ -108,6 +116,8 @@ bool begins_as(OutputKind kind, std::string_view start) {
              start.find(R"("command": "boxtree report)") != std::string_view::npos;
     case OutputKind::kDepfile:
       return is_depfile(start);
+    case OutputKind::kJournal:
+      return is_journal(start);
   }
   return false;
 }
@@ -127,6 +137,8 @@ const char* name_of(OutputKind kind) {
       return "JSON of a report";
     case OutputKind::kDepfile:
       return "a depfile of a cook";
+    case OutputKind::kJournal:
+      return "a journal of cooks";
   }
   return "";
 }

@@ -29,6 +29,7 @@ enum class OutputKind {
   kReportCsv,
   kReportJson,
   kDepfile,
+  kJournal,  // which is added to
 };
 
 /// Checks that an output is new, empty, no regular file (a pipe, say), or begins as its kind does,

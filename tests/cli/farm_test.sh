@@ -172,10 +172,28 @@ grep -q '^boxtree: no_faces: bad.jsonl:3: in/bad.obj' err
 sed 's|in/m4.obj|in/absent.obj|' bad.jsonl >absent.jsonl
 expect 2 "$boxtree" cook --manifest absent.jsonl --json --journal absent.done
 same "$(jq -c 'select(.error) | [.line, .key == null, .error.may_pass]' out | sort | xargs)" '[3,false,false] [4,true,true]'
+# Found by a newcomer: the journal was written behind a mesh, or behind the manifest.
+cp in/m1.obj kept.obj
+expect 1 "$boxtree" cook --manifest absent.jsonl --journal kept.obj
+cmp in/m1.obj kept.obj
+same "$(cat err)" 'boxtree: usage: cook: --journal kept.obj: expected a journal of cooks there, or none, found another file; it would be lost: remove it, or name another'
+echo '{"output":"first.bxt","inputs":["in/m1.obj"]}' >first.jsonl
+cp first.jsonl kept.jsonl
+expect 1 "$boxtree" cook --manifest first.jsonl --journal first.jsonl
+cmp first.jsonl kept.jsonl
 # A reason that stays: no other run writes it either.
 echo "{\"inputs\":[\"in/m1.obj\"],\"output\":\"cooked/$(printf 'x%.0s' $(seq 300)).bxt\"}" >long.jsonl
 expect 3 "$boxtree" cook --manifest long.jsonl --json
 same "$(jq -c '[.error.name, .error.status, .error.may_pass]' out)" '["write_failed",2,false]'
+# Found by a newcomer: names of something else are retried for ever.
+mkdir -p folder
+echo notes >notes.txt
+printf '{"inputs":["in/m1.obj"],"output":"%s"}\n' notes.txt folder notes.txt/m.bxt /dev/null >names.jsonl
+echo '{"inputs":["folder"],"output":"cooked/folder.bxt"}' >>names.jsonl
+expect 3 "$boxtree" cook --manifest names.jsonl --json
+same "$(jq -c '[.line, .error.status, .error.may_pass]' out | sort | xargs)" \
+  '[1,2,false] [2,2,false] [3,2,false] [4,2,false] [5,2,false]'
+same "$(cat notes.txt)" notes
 # Its shard alone tells it.
 for i in 0 1 2; do "$boxtree" cook --manifest absent.jsonl --json --shard "$i/3" 2>/dev/null || true; done | jq -c 'select(.line == 4) | .line' >told
 same "$(wc -l <told)" 1

@@ -139,6 +139,10 @@ TEST(FolderCache, KeepsToItsSizeAndTheLeastRecentlyUsedGoFirst) {
   const auto key_of = [](int i) { return sha256_of("key" + std::to_string(i)); };
   const auto bytes_of = [](int i) { return std::string(1500, 'x') + std::to_string(i); };
   const auto start = fs::file_time_type::clock::now() - std::chrono::hours(24);
+  // Found by a newcomer: files that somebody else has put there went first.
+  fs::create_directories(folder.path() / "c/cas/aa");
+  const fs::path foreign = folder.write("c/cas/aa/notes.txt", "");
+  fs::last_write_time(foreign, start - std::chrono::hours(1));
   for (int i = 0; i < 60; ++i) {
     ASSERT_TRUE(cache.store(key_of(i), folder.write("o", bytes_of(i)), ""));
     EXPECT_LE(bytes_in(folder.path() / "c"), kMost);
@@ -154,6 +158,7 @@ TEST(FolderCache, KeepsToItsSizeAndTheLeastRecentlyUsedGoFirst) {
   }
   EXPECT_EQ(fetched(cache, key_of(1), folder), "none");
   EXPECT_GT(bytes_in(folder.path() / "c"), kMost / 2);
+  EXPECT_TRUE(fs::exists(foreign));
 }
 
 TEST(FolderCache, ADamagedCountIsCountedAnew) {

@@ -45,8 +45,12 @@ TEST(Manifest, SaysWhatIsWrongWithALine) {
   EXPECT_EQ(refusal("{\"input\":[\"a.obj\"],\"output\":\"a.bxt\"}"),
             "jobs.jsonl:1: expected inputs, output, options or profile, found \"input\"; did you "
             "mean 'inputs'?");
-  EXPECT_EQ(refusal("{\"inputs\":\"a.obj\",\"output\":\"a.bxt\"}"),
-            "jobs.jsonl:1: inputs: expected an array of texts, found string");
+  EXPECT_EQ(
+      refusal("{\"inputs\":\"a.obj\",\"output\":\"a.bxt\"}"),
+      "jobs.jsonl:1: inputs: expected an array of texts, as \"inputs\": [\"...\"], found string");
+  EXPECT_EQ(refusal(" [" + good),
+            "jobs.jsonl:1: expected a JSON object in each line, found [; no list stands around "
+            "them");
   EXPECT_EQ(refusal("{\"inputs\":[7],\"output\":\"a.bxt\"}"),
             "jobs.jsonl:1: inputs: expected a text, found number");
   EXPECT_EQ(refusal("{\"inputs\":[[\"a\"]],\"output\":\"a.bxt\"}"),

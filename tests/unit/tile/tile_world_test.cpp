@@ -176,6 +176,11 @@ TEST_F(TileWorld, WritesOverNothingElse) {
   folder_.write("world.jsonl", "my notes\n");
   EXPECT_EQ(tile_world(options).code(), Errc::kWriteFailed);
   EXPECT_EQ(test::read_text(options.jobs), "my notes\n");
+  // Found by a newcomer: a manifest that was written by hand.
+  const std::string by_hand = R"({"inputs":["a.ply"],"output":"a.bxt","options":["--exact"]})";
+  folder_.write("world.jsonl", by_hand);
+  EXPECT_EQ(tile_world(options).code(), Errc::kWriteFailed);
+  EXPECT_EQ(test::read_text(options.jobs), by_hand);
   fs::remove(options.jobs);
   static_cast<void>(require(tile_world(options)));
   const fs::path tile =

@@ -117,6 +117,22 @@ TEST(Outputs, OfEarlierVersionsAreReplaced) {
   EXPECT_EQ(code(OutputKind::kDepfile, "m.bxt: \\\n  m.obj\n"), Errc::kOk);
 }
 
+// Found by a newcomer: lines of a journal were added to a mesh.
+TEST(Outputs, OfAJournalAreAddedToJournalsAlone) {
+  const test::TempFolder folder;
+  const auto code = [&](const std::string& found) {
+    return check_replaced(folder.write("out", found), OutputKind::kJournal).code();
+  };
+  const std::string line = R"({"output":"a.bxt","key":"")";
+  for (std::size_t end = 0; end <= line.size(); ++end) {
+    EXPECT_EQ(code(line.substr(0, end)), Errc::kOk) << end;  // also where it was cut short
+  }
+  EXPECT_EQ(code("{\"file\":\"a.obj\",\"state\":[]}\n"), Errc::kOk);
+  for (const char* found : {"v 0 0 0\n", "{\"inputs\":[\"a.obj\"]}\n", "{}", "\n"}) {
+    EXPECT_EQ(code(found), Errc::kWriteFailed) << found;
+  }
+}
+
 TEST(Outputs, AreDepfilesAsAWhole) {
   const test::TempFolder folder;
   for (const char* found :
