@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What queries expect of their arguments. Queries return names of arguments alone, which a
 // std::string takes without allocating; only who prints an error links these texts.
+#include <cstddef>
+#include <string_view>
+
 #include <boxtree/error.h>
 
 namespace boxtree {
@@ -27,18 +30,21 @@ constexpr Expectation kExpectations[] = {
     {"half_extents", kFinite},
     {"rotation", "four finite numbers, not all 0"},
     {"t_min", kUnsigned},
-    {"t_max", "0 or more, and not less than t_min"},
+    {"t_max", "0 or more, and of a ray not less than t_min"},
     {"distance", kUnsigned},
     {"max_distance", kUnsigned},
     {"relative_error", kUnsigned},
     {"absolute_error", kUnsigned},
     {"box", "finite corners, min not above max on any axis"},
+    {"struct_size", "sizeof the struct, set before the call"},
     {"planes", "a matrix of finite numbers, and of rows whose sums are finite"},
 };
 
 }  // namespace
 
 std::string_view expected_of(std::string_view argument) noexcept {
+  const std::size_t before = argument.rfind(": ");  // "hit: struct_size"
+  if (before != std::string_view::npos) argument.remove_prefix(before + 2);
   for (const Expectation& each : kExpectations) {
     if (each.argument == argument) return each.expected;
   }

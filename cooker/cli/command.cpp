@@ -313,9 +313,10 @@ Option* Command::add(CLI::Option* parsed) {
     parsed->check([this, name, long_name](const std::string& value) {
       const std::string joined = "-" + name + value;
       const std::string meant = "-" + joined.substr(0, joined.find('='));
-      if (is_word(joined) && app_->get_option_no_throw(meant) != nullptr) {
-        throw CLI::ArgumentMismatch(
-            fmt::format("'{}' is no option; did you mean '{}'?", joined, meant));
+      const bool is_begun = value.size() > 1 && long_name.starts_with(joined.substr(1));
+      if (is_word(joined) && (is_begun || app_->get_option_no_throw(meant) != nullptr)) {
+        throw CLI::ArgumentMismatch(fmt::format("'{}' is no option; did you mean '{}'?", joined,
+                                                is_begun ? "--" + long_name : meant));
       }
       if (!value.starts_with('=')) return std::string();
       return fmt::format("expected -{0} {2} or --{1}={2}, found -{0}={2}", name, long_name,

@@ -64,10 +64,12 @@ std::string report_text(const Arguments& arguments, const std::string& output,
     text += fmt::format("wrote {}: face i of the tree is face i of it\n",
                         shown(arguments.cook.job.reordered.string()));
   }
+  const std::optional<BlobMethod>& blob = arguments.cook.job.options.blob;
+  const char* const whole = !blob ? "" : *blob == BlobMethod::kLzma ? " (xz)" : " (zstd)";
   return text + fmt::format(
-                    "wrote {}, {} bytes, in {:.2f} s; every triangle proven inside every "
+                    "wrote {}, {} bytes{}, in {:.2f} s; every triangle proven inside every "
                     "box above it\n",
-                    shown(output), summary.file_bytes, seconds);
+                    shown(output), summary.file_bytes, whole, seconds);
 }
 
 // What is wrong with the command line as a whole; empty if nothing is.

@@ -162,7 +162,9 @@ std::string mismatch(const std::string& said) {
     return said.substr(0, at) + ": expected once, found " + said.substr(at + kRepeated.size()) +
            " times";
   }
-  return said;
+  const bool is_of_profile =
+      said.starts_with("--profile excludes ") || said.ends_with(" excludes --profile");
+  return is_of_profile ? said + ": the profile says it, by a key" : said;
 }
 
 // What was probably meant to be the value of --output, which is missing: an input that is no mesh,

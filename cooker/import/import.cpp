@@ -117,9 +117,10 @@ Error explained(const SourceFile& source, const Error& error) {
   }
   const std::string ending = source.path().extension().string();
   if (const char* const meant = misnamed_mesh(source); meant != nullptr && !ending.empty()) {
-    return {error.code, fmt::format("{}: expected what a file in {} is, found one that begins as "
-                                    "those in {} do: it needs that ending",
-                                    title, ending, meant)};
+    return {error.code,
+            fmt::format("{0}: expected what {1} files hold, found one that begins as {2} "
+                        "files do: rename it to end in {2}",
+                        title, ending, meant)};
   }
   if (has_mesh_ending(source.path())) return error;
   const char* const remedy = ending == ".toml" ? "; cook --profile takes a profile" : "";

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,15 +40,17 @@ bool has_smaller_arrays(const MeshTradeoff& mesh, const TradePoint& clusters) {
   });
 }
 
-// The first point that may be advised with the least score; empty if all scores are infinite.
+// The point that may be advised with the least score, of several the one that is least slow; empty
+// if all scores are infinite.
 std::optional<std::size_t> least(const std::vector<bool>& may_be_advised,
+                                 const std::vector<double>& slower,
                                  const std::function<double(std::size_t)>& score) {
   std::optional<std::size_t> best;
-  double best_score = kNone;
+  std::pair best_score{kNone, kNone};
   for (std::size_t i = 0; i < may_be_advised.size(); ++i) {
     if (!may_be_advised[i]) continue;
-    const double of_point = score(i);
-    if (of_point < best_score) {
+    const std::pair of_point{score(i), slower[i]};
+    if (of_point.first < kNone && of_point < best_score) {
       best = i;
       best_score = of_point;
     }
@@ -84,15 +87,15 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
   } else {
     times = "By its counted work, in the mean " + times + ".";
   }
-  return {
-      role + ": " + point.name() + ".",
-      fmt::format("{:.2f} bytes per triangle, a file of {} bytes: {:.0f} % of the source arrays, "
-                  "tree included; {:.2f} with geometry and without face ids, as cook counts. {} {} "
-                  "Slowdown: {:.2f}.",
-                  mesh.per_triangle(bytes), bytes,
-                  100.0 * static_cast<double>(bytes) / static_cast<double>(mesh.source.total()),
-                  mesh.per_triangle(point.bytes.queried()), surface, times, slowdown),
-      cook_command(mesh, point)};
+  return {role + ": " + point.name() + ".",
+          fmt::format("{:.2f} bytes per triangle, a file of {} bytes: {:.0f} % of the source's "
+                      "positions and corners as arrays, tree included; {:.2f} with geometry and "
+                      "without face ids, as cook counts. {} {} "
+                      "Slowdown: {:.2f}.",
+                      mesh.per_triangle(bytes), bytes,
+                      100.0 * static_cast<double>(bytes) / static_cast<double>(mesh.source.total()),
+                      mesh.per_triangle(point.bytes.queried()), surface, times, slowdown),
+          cook_command(mesh, point)};
 }
 
 // What an encoding is best in, and among which.
@@ -176,12 +179,14 @@ std::optional<Advice> advise(const MeshTradeoff& mesh) {
   const double coarse = mesh.tolerance ? mesh.tolerance_left : kCoarse;
   const double fine = mesh.tolerance ? mesh.tolerance_left : kFine;
   const auto smallest =
-      least(may, [&](std::size_t i) { return moved(i) <= coarse ? bytes(i) : kNone; });
-  const auto balanced =
-      least(may, [&](std::size_t i) { return moved(i) <= fine ? bytes(i) * slower[i] : kNone; });
+      least(may, slower, [&](std::size_t i) { return moved(i) <= coarse ? bytes(i) : kNone; });
+  const auto balanced = least(
+      may, slower, [&](std::size_t i) { return moved(i) <= fine ? bytes(i) * slower[i] : kNone; });
   // Among equal surfaces: triangles that a coarse grid makes points take no time.
-  const auto fastest = least(may, [&](std::size_t i) { return is_exact(i) ? slower[i] : kNone; });
-  const auto exact = least(may, [&](std::size_t i) { return is_exact(i) ? bytes(i) : kNone; });
+  const auto fastest =
+      least(may, slower, [&](std::size_t i) { return is_exact(i) ? slower[i] : kNone; });
+  const auto exact =
+      least(may, slower, [&](std::size_t i) { return is_exact(i) ? bytes(i) : kNone; });
   if (!smallest || !balanced || !fastest || !exact) return std::nullopt;
   return Advice{*smallest, *balanced, *fastest, *exact};
 }

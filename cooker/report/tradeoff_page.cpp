@@ -258,13 +258,14 @@ PageSection advice_section(const MeshTradeoff& mesh) {
       "ids, nodes and geometry alone, is the figure \"with geometry\" of boxtree cook. "
       "Unless told a codec, boxtree cook{}{} chooses by counted work, the same on every machine: "
       "{}. "
-      "The choices above go by the times on this page, by whole files, and by how far a surface "
+      "The choices above go by the {} on this page, by whole files, and by how far a surface "
       "may move, so that they may differ. Only encodings with the same surface, bit for bit, "
       "compete for the fastest. Slowdown: {}, of the {} mean times of rays, boxes ({}), closest "
       "points and contacts ({}).",
       mesh.is_f64 ? " --f64" : "",
       mesh.tolerance ? fmt::format(" --tolerance {}", *mesh.tolerance) : "", cooks,
-      kSlowdownMeaning, mesh.timed ? "measured" : "modelled", kBoxMeaning, contacts_meaning(mesh));
+      mesh.timed ? "times" : "modelled times", kSlowdownMeaning,
+      mesh.timed ? "measured" : "modelled", kBoxMeaning, contacts_meaning(mesh));
   if (mesh.timed) {
     section.notes += fmt::format(
         " The slowdown that boxtree cook prints is that of the same kinds of queries, but of fewer "

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <span>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -56,10 +59,11 @@ bool is_spawned(const Profile& profile, std::uint32_t object) {
 
 // Of instances and of their meshes.
 std::vector<std::string> names_of(const SourceScene& scene) {
-  std::vector<std::string> names;
-  for (const SceneInstance& instance : scene.instances) names.push_back(instance.name);
-  for (const SceneMesh& mesh : scene.meshes) names.push_back(mesh.mesh.name);
-  return names;
+  std::set<std::string> names;
+  for (const SceneInstance& instance : scene.instances) names.insert(instance.name);
+  for (const SceneMesh& mesh : scene.meshes) names.insert(mesh.mesh.name);
+  names.erase(std::string());
+  return {names.begin(), names.end()};
 }
 
 // Why an object that matches names has no instance: others come first, or its names are misspelt.
@@ -77,7 +81,11 @@ std::string why_none(const SourceScene& scene, const Profile& profile,
                        profile.objects[objects[i]].name.value,
                        is_stated ? "as the instance states" : "an object that comes first");
   }
-  return suggestion(globs.front().value, names_of(scene));
+  constexpr std::size_t kMostListed = 8;
+  const std::vector<std::string> names = names_of(scene);
+  const std::string meant = suggestion(globs.front().value, names);
+  const bool are_few = !names.empty() && names.size() <= kMostListed;
+  return meant.empty() && are_few ? "; expected " + listed(names) : meant;
 }
 
 void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan& plan) {

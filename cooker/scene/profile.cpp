@@ -385,9 +385,13 @@ Status ProfileReader::read(const TomlTable& root) {
     Fields keys(*contact->table, "[contact]", contact->line, complaints_);
     read_contact(keys, profile_.scene.contact, false);
     // Values that are wrong have been reported already, at later lines.
-    if (keys.find("stiffness") == nullptr || keys.find("mass") == nullptr) {
+    const bool has_stiffness = keys.find("stiffness") != nullptr;
+    const bool has_mass = keys.find("mass") != nullptr;
+    if (!has_stiffness || !has_mass) {
       complaints_.expected(contact->line, "[contact]", "the keys \"stiffness\" and \"mass\"",
-                           "not both");
+                           has_stiffness ? "no \"mass\""
+                           : has_mass    ? "no \"stiffness\""
+                                         : "neither");
     }
     keys.finish();
   }

@@ -79,8 +79,11 @@ Result<TomlTable> parse_toml(std::string_view text, std::string_view path) {
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();
+    const std::string_view what = error.description();
+    const bool is_no_value = what.find("could not determine value type") != what.npos;
     return Error{Errc::kProfileInvalid,
-                 fmt::format("{}:{}: {}", path, error.source().begin.line, error.description())};
+                 fmt::format("{}:{}: {}{}", path, error.source().begin.line, what,
+                             is_no_value ? "; a text stands in quotes" : "")};
   }
   return table_of(parsed.table());
 }

@@ -685,6 +685,8 @@ expect 0 "$boxtree" bench point.bxt --quick --runs 1
 mkdir folder.bxt
 expect 2 "$boxtree" cook cube.obj -o folder.bxt
 same "$(cat err)" 'boxtree: write_failed: folder.bxt: is a folder; expected the name of a file'
+expect 1 "$boxtree" tile cube.obj -o tiles.bxt
+same "$(head -1 err)" 'boxtree: usage: tile: -o names the manifest, for cook --manifest: expected tiles.jsonl'
 expect 1 "$boxtree" tile cube.obj -o tiles.obj
 same "$(cat err)" "boxtree: usage: tile: tiles.obj: expected another ending than .obj, which is that of a mesh, as tiles.jsonl"
 # Faces that name a vertex twice have no edges, so nothing is closed.
@@ -747,14 +749,17 @@ refused_words "cook: '-jobs' is no option; did you mean '--jobs'?" cook cube.obj
 refused_words "cook: '-json' is no option; did you mean '--json'?" cook cube.obj -o d.bxt -json
 refused_words "report: '-output' is no option; did you mean '--output'?" report cube.obj -output d.html
 refused_words "export: '-output' is no option; did you mean '--output'?" export cube.bxt -output d.glb
-[ ! -e utput ]
-expect 0 "$boxtree" cook cube.obj -outpu -q
+# Found by a newcomer: -out was -o ut.
+refused_words "cook: '-out' is no option; did you mean '--output'?" cook cube.obj -out d.bxt
+[ ! -e utput ] && [ ! -e ut ]
+expect 0 "$boxtree" cook cube.obj -outfit -q
 expect 0 "$boxtree" cook cube.obj -o utput -j1 -q
-rm utpu utput
+rm utfit utput
 # A file that was meant to be the output.
 refused_words 'cook: -o, --output FILE is required; did you mean -o d.bxt?' cook cube.obj d.bxt
 refused_words 'export: -o, --output FILE is required; did you mean -o d.glb?' export cube.bxt d.glb
 refused_words 'report: d.html is no mesh; did you mean -o d.html?' report cube.obj d.html
+refused_words 'cook: --profile excludes --tolerance: the profile says it, by a key' cook cube.obj --profile p.toml --tolerance 1 -o d.bxt
 refused_words 'report: with --quiet and no output nothing is told; expected -o FILE.html' report cube.obj -q
 refused_words 'report: d.csv is no mesh; did you mean --csv d.csv?' report cube.obj d.csv --quick
 refused_words 'report: d.json is no mesh; did you mean --json-out d.json?' report cube.obj d.json

@@ -85,7 +85,7 @@ same "$(cat err)" 'boxtree: no_scene: all.bxt: --scene rock: this tree was cooke
 expect 1 "$boxtree" query all.bxt --scene rok "${ray[@]}"
 grep -q "did you mean 'rock'" err
 expect 1 "$boxtree" query all.bxt --scene rock --tree rock "${ray[@]}"
-same "$(head -1 err)" 'boxtree: usage: query: --scene excludes --tree'
+same "$(head -1 err)" 'boxtree: usage: query ray: --tree excludes --scene'
 expect 1 "$boxtree" query all.bxt --tree rok ray --origin 0,0,9 --direction 0,0,-1
 grep -q "did you mean 'rock'" err
 expect 0 "$boxtree" export all.bxt --tree rock -o rock.glb

@@ -113,12 +113,12 @@ TEST_F(ImportErrorTest, AMeshOfAnotherFormatIsToldByHowItBegins) {
     for (const std::string ending : {".obj", ".ply"}) {
       if (ending == meant) continue;
       const Error error = fail("a" + ending, content);
-      EXPECT_TRUE(has(error.detail, "expected what a file in " + ending +
-                                        " is, found one that begins as those in " + meant +
-                                        " do: it needs that ending"))
+      EXPECT_TRUE(has(error.detail, "expected what " + ending +
+                                        " files hold, found one that begins as " + meant +
+                                        " files do: rename it to end in " + meant))
           << error.detail;
     }
-    EXPECT_FALSE(has(fail("a" + meant, content).detail, "needs that ending"));
+    EXPECT_FALSE(has(fail("a" + meant, content).detail, "rename it to end"));
   }
 }
 

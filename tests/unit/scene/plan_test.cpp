@@ -91,7 +91,8 @@ match = ["Tree*"]
   EXPECT_EQ(planned.instances[0].layer, 5u);
   ASSERT_EQ(planned.notices.size(), 2u);
   EXPECT_EQ(planned.notices[0],
-            "scene.toml:9: match = [\"Rock*\"]: no instance is of object \"nothing\"");
+            "scene.toml:9: match = [\"Rock*\"]: no instance is of object \"nothing\"; expected "
+            "Ground, Hero, Tree_1, Tree_2, ground, hero, tree or unused");
   expect_decision(planned, Aspect::kInstances, OwnerKind::kObject, 3, true, 11, "1 moving");
 }
 

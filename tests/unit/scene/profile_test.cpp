@@ -400,7 +400,7 @@ constexpr ProfileFault kContradictions[] = {
     {"[contact]\nstiffness = 1\nmass = 1\njump = 1\ninvisible = true\n",
      "scene.toml:5: invisible: expected either \"jump\" or \"invisible\", found both"},
     {"[contact]\nstiffness = 1\n",
-     "scene.toml:1: [contact]: expected the keys \"stiffness\" and \"mass\", found not both"},
+     "scene.toml:1: [contact]: expected the keys \"stiffness\" and \"mass\", found no \"mass\""},
     {"[[object]]\nname = 'a'\nmass = 1\n",
      "scene.toml:3: contact: expected the key \"stiffness\" as well, found none"},
     {"[scene]\nqueries = ['ray']\n[[object]]\nname = 'a'\nqueries = ['ray', 'box']\n",
