@@ -57,6 +57,23 @@ uint32_t bxt_file_tree_count(const bxt_file* file) {
   return file->inside.tree_count();
 }
 
+bool bxt_file_is_pack(const bxt_file* file) {
+  return file->inside.is_pack();
+}
+
+bxt_status bxt_file_open_member(const bxt_file* file, uint32_t tree, bxt_file** member,
+                                uint32_t* number, bxt_error* error) {
+  if (const char* name = first_null("file", file, "member", member))
+    return refuse_null(error, name);
+  return guarded(error, [&] {
+    Result<Member> opened = file->inside.member(tree);
+    if (!opened) return fail(error, opened.error());
+    *member = file->allocation.make<bxt_file>(std::move(opened->file));
+    if (number != nullptr) *number = opened->tree;
+    return bxt_status{BXT_OK};
+  });
+}
+
 bool bxt_file_has_scene(const bxt_file* file) {
   return file->inside.has_scene();
 }

@@ -21,7 +21,9 @@
 // Structs. bxt_vec3, bxt_quaternion, bxt_pose, bxt_plane, bxt_ray, bxt_face and bxt_triangle are
 // what they are for good. All others begin with `struct_size`, the bytes that the caller's header
 // gives them: set it, and the rest to zero, as `bxt_ray_hit hit = {.struct_size = sizeof hit};`
-// does, or take the struct from the function bxt_default_...() of its name. Later versions add
+// does. bxt_limits, bxt_face_options, bxt_approximation and bxt_motion come from the function
+// bxt_default_...(), or bxt_motion_along(), instead: 0 is a value of their members, such as no
+// layer and no node, and not the default; NULL in their place is all defaults. Later versions add
 // members at the end: a library reads and writes no member that its caller does not know, and
 // refuses (BXT_INVALID_QUERY) one it does not know itself unless it is zero. Of an array of structs
 // the first one's size is that of all; the others need not set it. Arrays that are written have it
@@ -73,7 +75,7 @@ extern "C" {
 
 /// The version of this interface: major * 65536 + minor. Programs run with a library of the same
 /// major version whose minor version is theirs or higher.
-#define BXT_ABI_VERSION 0x10002u
+#define BXT_ABI_VERSION 0x10003u
 
 /// BXT_ABI_VERSION of the library that is linked.
 BXT_API uint32_t bxt_abi_version(void);
@@ -339,7 +341,15 @@ BXT_API void bxt_file_close(bxt_file* file);
 
 /// How many trees it holds, those of a scene included.
 BXT_API uint32_t bxt_file_tree_count(const bxt_file* file);
-/// Whether bxt_scene_bind() finds a scene.
+/// Whether it is a pack of many files, which is used like one: its trees are those of all members.
+BXT_API bool bxt_file_is_pack(const bxt_file* file);
+/// Opens the file that a tree is in: a member of a pack, which may have a scene of its own; of
+/// another file, the same again. Its bytes are those of `file`, which has to be open for as long;
+/// it is given back to bxt_file_close(). `number`: that of the tree there; may be NULL. Errors:
+/// BXT_TREE_INDEX, BXT_OUT_OF_MEMORY; of a pack, BXT_RECORD_INVALID and those of bxt_file_open().
+BXT_API bxt_status bxt_file_open_member(const bxt_file* file, uint32_t tree, bxt_file** member,
+                                        uint32_t* number, bxt_error* error);
+/// Whether bxt_scene_bind() finds a scene; no pack has one, but its members may.
 BXT_API bool bxt_file_has_scene(const bxt_file* file);
 /// Name of a tree; empty when it has none or there is no such tree.
 BXT_API size_t bxt_file_tree_name(const bxt_file* file, uint32_t tree, char* buffer,

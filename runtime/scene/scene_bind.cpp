@@ -35,7 +35,7 @@ Status BoundScene::bind_sections(const File& opened) {
   const Bytes section = file.section(SectionKind::kScene);
   if (section.empty()) {
     return Error{Errc::kNoScene,
-                 file.is_pack() ? "a pack has none; bind the file of File::member()" : ""};
+                 file.is_pack() ? "a pack has none; bind a member of it (File::member)" : ""};
   }
   const auto sized = [&](SectionKind kind, std::uint64_t count, std::uint64_t element) {
     return sized_section(file.section(kind), kind, count, element);

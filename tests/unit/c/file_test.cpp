@@ -12,6 +12,7 @@
 #include <boxtree/boxtree.h>
 
 #include "cooker/cook.h"
+#include "cooker/write/pack_writer.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -152,6 +153,62 @@ TEST(CFiles, TakeAdviceWhereTheyAreMapped) {
     EXPECT_FALSE(bxt_file_advise(in_memory.get(), access));
   }
   EXPECT_FALSE(bxt_file_advise(mapped.get(), BXT_ACCESS_DONT_NEED + 1));
+}
+
+// Found by an audit: scenes in packs were out of reach.
+TEST(CFiles, MembersOfAPackAreFiles) {
+  const test::TempFolder folder;
+  const test::CookedScene cooked =
+      test::cook_scene({test::torus(8, 6)}, test::random_parts(12, 1, 3, 1, 1));
+  write(folder.path() / "scene.bxt", cooked.bytes);
+  write(folder.path() / "trees.bxt", two_trees());
+  const cooker::OpenInput open = [](const std::filesystem::path& path) {
+    return File::open(path.string());
+  };
+  std::vector<cooker::PackMember> members;
+  for (const char* name : {"scene.bxt", "trees.bxt"}) {
+    for (cooker::PackMember& member : test::require(
+             cooker::list_members(folder.path() / name, cooker::PackNames::kTree, open))) {
+      members.push_back(std::move(member));
+    }
+  }
+  const std::filesystem::path path = folder.path() / "all.bxt";
+  ASSERT_TRUE(cooker::write_pack(path, members, open).ok());
+  const File file = test::require(File::open(path.string()));
+  bxt_file* pack = nullptr;
+  ASSERT_EQ(bxt_file_open(path.c_str(), nullptr, &pack, nullptr), BXT_OK);
+  EXPECT_TRUE(bxt_file_is_pack(pack));
+  EXPECT_FALSE(bxt_file_has_scene(pack));
+  ASSERT_EQ(bxt_file_tree_count(pack), file.tree_count());
+  int scenes = 0;
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
+    const Member expected = test::require(file.member(i));
+    bxt_file *member = nullptr, *again = nullptr;
+    std::uint32_t number = 99;
+    ASSERT_EQ(bxt_file_open_member(pack, i, &member, &number, nullptr), BXT_OK);
+    EXPECT_EQ(number, expected.tree);
+    EXPECT_FALSE(bxt_file_is_pack(member));
+    EXPECT_EQ(bxt_file_tree_count(member), expected.file.tree_count());
+    EXPECT_EQ(bxt_file_has_scene(member), expected.file.has_scene());
+    if (expected.file.has_scene()) {
+      ++scenes;
+      bxt_scene* scene = nullptr;
+      ASSERT_EQ(bxt_scene_bind(member, nullptr, &scene, nullptr), BXT_OK);
+      EXPECT_EQ(bxt_scene_instance_count(scene), cooked.parts.instances.size());
+      bxt_scene_release(scene);
+    }
+    EXPECT_EQ(bxt_file_open_member(member, number, &again, nullptr, nullptr), BXT_OK);
+    EXPECT_EQ(bxt_file_tree_count(again), bxt_file_tree_count(member));
+    bxt_file_close(again);
+    bxt_file_close(member);
+  }
+  EXPECT_EQ(scenes, 1);
+  bxt_file* none = nullptr;
+  EXPECT_EQ(bxt_file_open_member(pack, file.tree_count(), &none, nullptr, nullptr), BXT_TREE_INDEX);
+  EXPECT_EQ(bxt_file_open_member(nullptr, 0, &none, nullptr, nullptr), BXT_INVALID_QUERY);
+  EXPECT_EQ(bxt_file_open_member(pack, 0, nullptr, nullptr, nullptr), BXT_INVALID_QUERY);
+  EXPECT_EQ(none, nullptr);
+  bxt_file_close(pack);
 }
 
 TEST(CFiles, InMemoryAreNotCopied) {
