@@ -31,17 +31,20 @@ TOP = """// SPDX-License-Identifier: MIT
 // boxtree %(version)s as one file: the runtime, which opens .bxt files and answers queries, behind its C interface,
 // boxtree_c.h. Written by runtime/c/amalgamate.py; change the sources that it is made of.
 //
-//   c++ -std=c++20 -O2 -c boxtree_amalgamated.cpp      g++ and clang++; arm64: add -ffp-contract=off
+//   c++ -std=c++20 -O2 -c boxtree_amalgamated.cpp      g++ and clang++
 //   cl /std:c++20 /O2 /fp:strict /EHsc /c boxtree_amalgamated.cpp      (not tested)
 //
 // -DBXT_ONLY_RAYS: rays and traversals of trees alone. Answers are those of every other build, to the bit.
-#if defined(__FAST_MATH__)
-#error "boxtree decides by exact arithmetic: compile it without -ffast-math"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || __FINITE_MATH_ONLY__ + 0 > 0
+#error "boxtree decides by exact arithmetic: compile it without -ffast-math and its parts (-fassociative-math, ...)"
 #endif
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("-ffp-contract=off", "-fno-math-errno")
 #elif defined(__clang__)
-#pragma clang fp contract(off)
+#if defined(__x86_64__) || defined(__i386__)
+#pragma float_control(precise, on)  // clang does not tell which parts of -ffast-math it is given; elsewhere it has no such pragma
+#endif
+#pragma clang fp contract(off) reassociate(off)
 #elif defined(_MSC_VER)
 #pragma fp_contract(off)
 #endif

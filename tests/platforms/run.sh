@@ -297,6 +297,13 @@ platform_amalgamation() {
     g++ -std=c++20 -O2 -DBXT_ONLY_RAYS -c boxtree_amalgamated.cpp -o rays.o &&
     gcc -std=c99 -O2 -I. "$source/samples/c/first_ray.c" rays.o -o first_ray -lstdc++ -lm
   ) >"$work/amalgamation.log" 2>&1 || { tail -5 "$work/amalgamation.log"; fail amalgamation "does not compile"; return 0; }
+  # Found by an audit: -ffast-math was refused, its parts were not.
+  local part
+  for part in -funsafe-math-optimizations -ffinite-math-only -freciprocal-math; do
+    g++ -std=c++20 "$part" -fsyntax-only "$work/amalgamation/boxtree_amalgamated.cpp" 2>"$work/amalgamation.log" &&
+      { fail amalgamation "compiles with $part"; return 0; }
+    grep -q 'decides by exact arithmetic' "$work/amalgamation.log" || { fail amalgamation "another error of $part"; return 0; }
+  done
   "$build/boxtree" cook "$source/samples/meshes/level.obj" -o "$work/ground.bxt" -q
   [ "$("$work/amalgamation/first_ray" "$work/ground.bxt")" = "ground at height 0.5, face 2" ] ||
     { fail amalgamation "finds another ground with BXT_ONLY_RAYS"; return 0; }
