@@ -2,6 +2,8 @@
 // Makes fixed queries of each kind of files that are the same everywhere, by the C interface, and prints
 // a digest of the answers of each kind and, last, of all: the same on every platform.
 //   digests COUNT FILE...      COUNT: queries of each kind and file
+//   digests --damaged COUNT FILE...      COUNT damaged copies of each file: whatever is in them, queries end, with an
+//                                        answer or an error, and read nothing beside them
 // A file with several trees is queried tree by tree and each against the first; one with a scene as that.
 #include <float.h>
 #include <math.h>
@@ -603,16 +605,14 @@ static void fail(const char* path, const bxt_error* error) {
   exit(1);
 }
 
-static void ask_file(const char* path, size_t count) {
-  bxt_error error = {.struct_size = sizeof error};
-  bxt_file* file = NULL;
-  bxt_file_options copied = {.struct_size = sizeof copied};
-  copied.copy = true;
-  if (bxt_file_open(path, &copied, &file, &error) != BXT_OK) fail(path, &error);
+// Makes queries of what is open, and closes it. Stops at a tree or scene that cannot be bound: the error.
+static bxt_status ask_opened(bxt_file* file, size_t count, bxt_error* error) {
+  bxt_status status = BXT_OK;
   bxt_tree* first = NULL;
-  for (uint32_t number = 0; number < bxt_file_tree_count(file); ++number) {
+  for (uint32_t number = 0; status == BXT_OK && number < bxt_file_tree_count(file); ++number) {
     bxt_tree* tree = NULL;
-    if (bxt_tree_bind(file, number, NULL, &tree, &error) != BXT_OK) fail(path, &error);
+    status = bxt_tree_bind(file, number, NULL, &tree, error);
+    if (status != BXT_OK) break;
     bxt_vec3 min = {0, 0, 0}, max = {1, 1, 1};
     bxt_tree_bounds(tree, &min, &max);
     const region r = region_of(min, max);
@@ -629,21 +629,92 @@ static void ask_file(const char* path, size_t count) {
     }
   }
   bxt_tree_release(first);
-  if (bxt_file_has_scene(file)) {
+  if (status == BXT_OK && bxt_file_has_scene(file)) {
     bxt_scene* scene = NULL;
-    if (bxt_scene_bind(file, NULL, &scene, &error) != BXT_OK) fail(path, &error);
-    ask_scene(scene, count);
+    status = bxt_scene_bind(file, NULL, &scene, error);
+    if (status == BXT_OK && bxt_scene_instance_count(scene) > 0) ask_scene(scene, count);
     bxt_scene_release(scene);
   }
   bxt_file_close(file);
+  return status;
+}
+
+static void ask_file(const char* path, size_t count) {
+  bxt_error error = {.struct_size = sizeof error};
+  bxt_file* file = NULL;
+  bxt_file_options copied = {.struct_size = sizeof copied};
+  copied.copy = true;
+  if (bxt_file_open(path, &copied, &file, &error) != BXT_OK) fail(path, &error);
+  if (ask_opened(file, count, &error) != BXT_OK) fail(path, &error);
+}
+
+// Bytes of a file in memory of just their size, so that tools that look for it see what is read beside them.
+static unsigned char* read_bytes(const char* path, size_t* size) {
+  FILE* const file = fopen(path, "rb");
+  if (file == NULL || fseek(file, 0, SEEK_END) != 0) exit(1);
+  *size = (size_t)ftell(file);
+  unsigned char* const bytes = malloc(*size);
+  rewind(file);
+  if (bytes == NULL || fread(bytes, 1, *size, file) != *size) exit(1);
+  fclose(file);
+  return bytes;
+}
+
+// Behind the section table, whose checksum refuses all else at once.
+static void damage(unsigned char* bytes, size_t size) {
+  uint32_t sections;
+  memcpy(&sections, bytes + 12, sizeof sections);
+  const size_t start = 32 + 16 * (size_t)sections;
+  const size_t changes = 1 + random_bits() % 4;
+  for (size_t i = 0; i < changes && start < size; ++i) {
+    const size_t at = start + random_bits() % (size - start);
+    const size_t rest = size - at, length = 1 + random_bits() % (rest < 8 ? rest : 8);
+    switch (random_bits() % 3) {
+      case 0:
+        bytes[at] ^= (unsigned char)(1u << random_bits() % 8);
+        break;
+      case 1:
+        memset(bytes + at, random_bits() % 2 != 0 ? 0xff : 0, length);
+        break;
+      default:
+        memmove(bytes + at, bytes + start + random_bits() % (size - start - length + 1), length);
+    }
+  }
+}
+
+// Returns how many of the copies could be opened and bound.
+static size_t ask_damaged(const char* path, size_t copies) {
+  size_t size, opened = 0;
+  unsigned char* const bytes = read_bytes(path, &size);
+  for (size_t i = 0; i < copies; ++i) {
+    unsigned char* const copy = malloc(size);
+    if (copy == NULL) exit(1);
+    memcpy(copy, bytes, size);
+    damage(copy, size);
+    bxt_error error = {.struct_size = sizeof error};
+    bxt_file* file = NULL;
+    if (bxt_file_open_memory(copy, size, NULL, &file, &error) == BXT_OK && ask_opened(file, 2, &error) == BXT_OK) ++opened;
+    free(copy);
+  }
+  free(bytes);
+  return opened;
 }
 
 int main(int argc, char** argv) {
+  const bool is_damaged = argc > 1 && strcmp(argv[1], "--damaged") == 0;
+  if (is_damaged) ++argv, --argc;
   if (argc < 3) {
-    fprintf(stderr, "usage: digests COUNT FILE...\n");
+    fprintf(stderr, "usage: digests [--damaged] COUNT FILE...\n");
     return 1;
   }
   const size_t count = (size_t)strtoul(argv[1], NULL, 10);
+  if (is_damaged) {
+    size_t opened = 0;
+    for (int i = 2; i < argc; ++i) opened += ask_damaged(argv[i], count);
+    printf("%llu of %llu damaged copies were queried\n", (unsigned long long)opened,
+           (unsigned long long)count * (unsigned long long)(argc - 2));
+    return opened > 0 ? 0 : 1;
+  }
   for (int i = 2; i < argc; ++i) ask_file(argv[i], count);
   uint64_t all = 0;
   for (int k = 0; k < KINDS; ++k) {

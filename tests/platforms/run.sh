@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Builds the runtime and its C interface for each platform, makes fixed queries there (digests.c) and
-# compares the digests of the answers with those that are pinned (digests-COUNT.txt). Prints PASS, FAIL or
+# compares the digests of the answers with those that are pinned (digests-COUNT.txt), also of the files of
+# tests/golden (digests-golden.txt); damaged copies end in an answer or an error. Prints PASS, FAIL or
 # SKIP, the name and the digest of all; exit 1 when one fails. What is missing is installed.
 #   tests/platforms/run.sh [--count N] [--long] [NAME...]     default: all
 #   --count N    queries of each kind and file [15000: 10^5 in all]; those of a number that is not pinned are
@@ -66,6 +67,14 @@ cook torus-f64-clusters "$here/torus.obj" --f64 --exact --for memory --codec wid
 cook crate "$source/samples/meshes/crate.obj" --active-edges 30 --materials
 cook courtyard "$source/samples/level/level.gltf"
 
+# The golden files of what the C interface reads.
+goldens=()
+for codec in wide4 wide8 wide8-edges wide8-grid wide8-materials wide8-user-data; do
+  python3 -c 'import sys; sys.stdout.buffer.write(bytes.fromhex(sys.stdin.read()))' \
+    <"$source/tests/golden/v1.0-$codec.hex" >"$work/v1.0-$codec.bxt"
+  goldens+=("v1.0-$codec.bxt")
+done
+
 # conclude NAME PROGRAM [RUNNER...]: runs the queries and compares their digest.
 conclude() {
   local name=$1 program=$2 digest
@@ -81,12 +90,22 @@ conclude() {
     pinned=$work/digests-$count.txt
     [ -f "$pinned" ] || cp "$work/$name.txt" "$pinned"
   fi
-  if diff "$pinned" "$work/$name.txt" >"$work/$name.diff"; then
-    echo "PASS $name $digest"
-  else
+  if ! diff "$pinned" "$work/$name.txt" >"$work/$name.diff"; then
     grep '^>' "$work/$name.diff" | head -5
     fail "$name" "other answers than pinned: $digest"
+    return
   fi
+  if ! (cd "$work" && "$@" "$program" 100 "${goldens[@]}") 2>"$work/$name.err" | tr -d '\r' | diff "$here/digests-golden.txt" - >"$work/$name.diff"; then
+    grep '^>' "$work/$name.diff" | head -5
+    fail "$name" "other answers of tests/golden"
+    return
+  fi
+  if ! (cd "$work" && "$@" "$program" --damaged $((30 + count / 100)) "${files[@]}" "${goldens[@]}") >"$work/$name.damaged.txt" 2>&1; then
+    tail -5 "$work/$name.damaged.txt"
+    fail "$name" "does not survive damaged files"
+    return
+  fi
+  echo "PASS $name $digest"
 }
 fail() {
   echo "FAIL $1 $2"
