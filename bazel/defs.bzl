@@ -3,8 +3,8 @@
 
     load("@boxtree_rules//:defs.bzl", "boxtree_mesh", "boxtree_scene")
 
-A cook reads its inputs and what these name (buffers of glTF, lists of hidden faces), all of which have to be declared:
-what is not is not there in the sandbox, and the cook fails. Its bytes depend on them, on their names, on the options and on
+A cook reads its inputs and what these name (buffers of glTF, MTL of OBJ, lists of hidden faces), all of which have to be
+declared: what is not is not there in the sandbox, and the cook fails. Its bytes depend on them, on their names, on the options and on
 the program; so a result of a remote cache is what a cook here would have written. The GUIDE of boxtree has an example.
 """
 
@@ -19,7 +19,7 @@ def _cook(ctx, inputs, arguments):
         inputs = inputs + [ctx.file.costs]
     command.add_all([ctx.expand_location(option, ctx.attr.data) for option in ctx.attr.options])
     command.add("--jobs", str(ctx.attr.jobs))
-    command.add("--quiet")
+    command.add_all(["--quiet", "--require-files"])
     ctx.actions.run(
         executable = ctx.file._boxtree,
         arguments = [command],
@@ -42,7 +42,7 @@ def _attributes(**own):
         own,
         data = attr.label_list(
             allow_files = True,
-            doc = "What the inputs name: buffers of glTF, lists of hidden faces, meshes that a profile names.",
+            doc = "What the inputs name: buffers of glTF, MTL of OBJ, lists of hidden faces, meshes that a profile names.",
         ),
         out = attr.output(doc = "The cooked file. Default: NAME.bxt."),
         options = attr.string_list(

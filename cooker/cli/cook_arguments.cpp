@@ -301,6 +301,9 @@ class Declaration {
                     ->excludes(arguments_.grid_step_option);
     rare(add_flag("--strip", arguments_.strip,
                   "Leave the cook record out, and of a single mesh its name"));
+    rare(add_flag("--require-files", arguments_.job.require_files,
+                  "Refuse a mesh that names a file that is not there, as an OBJ file its MTL; "
+                  "else that is a warning"));
     rare(add_flag("--trusted", arguments_.trusted,
                   "Read formats that assimp reads once, not first in another process that "
                   "may crash"));

@@ -84,12 +84,13 @@ Json place_of_bytes(const CookJob& job) {
 
 Json form_of(const CookJob& job) {
   const auto& [inputs, output, output_stream, profile, costs, depfile, reordered, as_scene, flatten,
-               options] = job;
+               require_files, options] = job;
   return {{"shape", shape_of(job)},
           {"bytes_at", place_of_bytes(job)},
           {"blob", options.blob ? Json(static_cast<unsigned>(*options.blob)) : Json(nullptr)},
           {"cook_record", options.cook_record},
           {"materials", options.materials},
+          {"require_files", require_files},  // else a hit would be one that lacks a file
           {"number_by_tree", options.number_by_tree || !reordered.empty()},
           {"search", form_of(static_cast<const SearchOptions&>(options))},
           {"import", form_of(options.import)}};

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "cooker/choose/cost_file.h"
 #include "cooker/import/source_files.h"
 #include "cooker/reorder/reordered_mesh.h"
@@ -84,6 +86,11 @@ class Job {
     Summary& summary = cooked.summary;
     summary.files_read = profile_.files_read;
     for (const ImportReport& import : summary.imports) {
+      if (job_.require_files && !import.files_missing.empty()) {
+        return Error{Errc::kFileNotFound,
+                     fmt::format("{}, which a mesh names and --require-files wants, is not there",
+                                 import.files_missing.front().string())};
+      }
       summary.files_read.insert(summary.files_read.end(), import.files_read.begin(),
                                 import.files_read.end());
     }

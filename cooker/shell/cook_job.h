@@ -25,14 +25,15 @@ struct CookJob {
   std::filesystem::path depfile = {};  // to write: all files that were read, in make syntax
   /// To write: the only input, an OBJ, PLY or glTF file, with its faces in the order of its tree.
   std::filesystem::path reordered = {};
-  bool as_scene = false;  // make the inputs one scene
-  bool flatten = false;   // make each input one tree, never a scene
+  bool as_scene = false;       // make the inputs one scene
+  bool flatten = false;        // make each input one tree, never a scene
+  bool require_files = false;  // refuse a mesh that names a file that is not there
   CookOptions options = {};
 };
 
 /// Checks a job before anything is read: the output must have a name, outputs must differ, and none
-/// may be an input, or one of `others` that it reads. Errors: kWriteFailed; kMeshUnsupported for a reordered mesh of several inputs
-/// or a scene, and as check_reordered_names.
+/// may be an input, or one of `others` that it reads. Errors: kWriteFailed; kMeshUnsupported for a
+/// reordered mesh of several inputs or a scene, and as check_reordered_names.
 Status check_job(const CookJob& job, std::span<const std::filesystem::path> others = {});
 
 /// Cooks a job: a scene if as_scene is set or the only input places meshes twice or more; otherwise

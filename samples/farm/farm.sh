@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # A cook farm on one machine: generated meshes, a manifest, shards side by side, a cache that they share, one edited
-# mesh. docs/FARM.md goes through it.
+# mesh, keys, an audit, a pack, a world in tiles. docs/FARM.md goes through it.
 #   samples/farm/farm.sh [MESHES [SHARDS]]       200 meshes in 4 shards by default; boxtree is on the PATH
 set -euo pipefail
 meshes=${1:-200} shards=${2:-4}
@@ -47,3 +47,32 @@ cp -r meshes jobs.jsonl elsewhere
 echo "one mesh is edited:"
 echo "# edited" >>elsewhere/meshes/hill0.obj
 (cd elsewhere && boxtree cook --manifest jobs.jsonl --cache ../cache)
+
+echo "keys, which an engine's own cache may be keyed by, and the files that the first job reads:"
+boxtree key --manifest jobs.jsonl | head -2 || true
+boxtree key meshes/hill0.obj -o cooked/hill0.bxt --inputs
+
+echo "an audit cooks some of the cache's hits again and compares:"
+rm elsewhere/cooked/*.bxt
+(cd elsewhere && boxtree cook --manifest jobs.jsonl --cache ../cache --audit 0.1)
+
+echo "one file of all outputs, and all of them out of it again:"
+boxtree key --manifest jobs.jsonl | cut -f2 >outputs.txt
+boxtree pack @outputs.txt --names path -o assets.bxt
+rm cooked/*.bxt
+boxtree split assets.bxt -o . --quiet
+(cd cooked && sha256sum --check --quiet ../one_run.sums)
+boxtree query assets.bxt --tree cooked/hill0 ray --origin 5,5,99 --direction 0,0,-1 | head -2
+
+echo "a world in tiles, of which an edit cooks its own:"
+for ((i = 0; i < 4; ++i)); do
+  awk -v dx=$((i % 2 * 100)) -v dy=$((i / 2 * 100)) '$1 == "v" { print "v", $2 + dx, $3 + dy, $4; next } { print }' "meshes/hill$i.obj" >"part$i.obj"
+done
+boxtree tile part[0-3].obj -o world.jsonl --triangles-per-tile 800
+boxtree cook --manifest world.jsonl --cache cache
+boxtree merge --manifest world.jsonl -o world.bxt
+boxtree query world.bxt ray --origin 105,105,99 --direction 0,0,-1 | head -2
+sed -i '1s/.*/v 0 0 1/' part0.obj
+boxtree tile part[0-3].obj -o world.jsonl --triangles-per-tile 800
+boxtree cook --manifest world.jsonl --cache cache
+boxtree merge --manifest world.jsonl -o world.bxt

@@ -233,6 +233,11 @@ for option in '' --quiet --json; do
   same "$(cat err)" 'boxtree: warning: cut.obj: the last line has no end, as if the file was cut short
 boxtree: warning: tree cut: 2 trees of the file have this name; --tree cut and find_tree() take the first, --tree NUMBER any'
 done
+# Or an error, if the build wants it: an engine whose actions see declared files alone, say.
+expect 2 "$boxtree" cook no_library.obj -o required.bxt --require-files
+same "$(cat err)" 'boxtree: file_not_found: gone.mtl, which a mesh names and --require-files wants, is not there'
+[ ! -e required.bxt ]
+expect 0 "$boxtree" cook crate.obj -o required.bxt --require-files
 # What is left of a face counts as no line.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2' >half.obj
 expect 0 "$boxtree" cook half.obj -o half.bxt

@@ -42,7 +42,7 @@ nginx -c "$work/nginx.conf"
 cp "$boxtree" "$work/bin/boxtree"
 checkout() {
   mkdir -p "$1/props"
-  cp "$source"/samples/meshes/{crate,level}.obj "$1/props/"
+  cp "$source"/samples/meshes/{crate.obj,crate.mtl,level.obj} "$1/props/"
   cp "$source"/samples/level/{level.gltf,scene.toml} "$1/"
   # A glTF file whose buffer is a file of its own.
   python3 - "$source/samples/level/level.gltf" "$1/outside.gltf" "$1/outside.bin" <<'END'
@@ -54,7 +54,7 @@ document["buffers"][0]["uri"] = "outside.bin"
 json.dump(document, open(sys.argv[2], "w"))
 open(sys.argv[3], "wb").write(data)
 END
-  cp "$source/samples/meshes/crate.obj" "$1/"
+  cp "$source"/samples/meshes/crate.{obj,mtl} "$1/"
   python3 - "$source" "$1" "$work/bin/boxtree" <<'END'
 import pathlib, sys
 source, checkout, program = map(pathlib.Path, sys.argv[1:])
@@ -81,6 +81,7 @@ boxtree_mesh(
         "crate.obj",
         "level.obj",
     ],
+    data = ["crate.mtl"],
     out = "props.bxt",
 )
 END
@@ -134,6 +135,10 @@ printf '\0' >>"$second/outside.bin"
 build "$second"
 expect "a buffer that changed" 0 1
 
+echo '# touched' >>"$second/props/crate.mtl"
+build "$second"
+expect "a material library that changed" 0 1
+
 # Another program: here the same one with a byte more.
 printf '\0' >>"$work/bin/boxtree"
 build "$second"
@@ -142,5 +147,9 @@ expect "a program that changed" 0 4
 sed -i '/data = \["outside.bin"\]/d' "$second/BUILD"
 if build "$second" //:outside; then fail "cooks with a buffer that is not declared"; fi
 grep -q 'outside.bin' "$work/build.log" || fail "does not say which input was not declared"
+# Found by an audit: without its material library a mesh was cooked to other bytes, with a warning.
+sed -i '/data = \["crate.mtl"\]/d' "$second/props/BUILD"
+if build "$second" //props:both; then fail "cooks with a material library that is not declared"; fi
+grep -q 'crate.mtl' "$work/build.log" || fail "does not say which library was not declared"
 (cd "$second" && bazel shutdown)
 echo "bazel: 4 cooked, 4 of the cache in a second checkout, what changed alone cooked again"
