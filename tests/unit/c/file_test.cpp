@@ -155,7 +155,7 @@ TEST(CFiles, TakeAdviceWhereTheyAreMapped) {
   EXPECT_FALSE(bxt_file_advise(mapped.get(), BXT_ACCESS_DONT_NEED + 1));
 }
 
-// Found by an audit: scenes in packs were out of reach.
+// Found by an audit: scenes in packs could not be bound.
 TEST(CFiles, MembersOfAPackAreFiles) {
   const test::TempFolder folder;
   const test::CookedScene cooked =
