@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Cook and report show their steps on a terminal, and only once they have worked half a second. Elsewhere report
+"""Cook, of a manifest, too, and report show their steps on a terminal, and only once they have worked half a second. Elsewhere report
 prints a line a step, and cook nothing. Cook writes no file to a terminal.
 
 No time here depends on the machine: the work is doubled until it is long enough to be shown, and
@@ -8,6 +8,7 @@ silence is required only of runs that took less than half a second from start to
 
     progress_test.py BOXTREE
 """
+import json
 import os
 import pty
 import re
@@ -22,6 +23,7 @@ GIVE_UP_AFTER = 20.0  # by then nearly all of a run's steps come later than SHOW
 ERASE = "\r\x1b[K"  # to the start of the line, and clear it
 STEPS = re.compile(rf"(?:{re.escape(ERASE)}(?:import|build|write) [\w.]+ \.\.\.)+")
 LINES = re.compile(r"(?:\[ *\d+ %\] [\w .:,-]+ \.\.\.\n)+")
+JOBS = re.compile(rf"(?:(?:{re.escape(ERASE)})+\[#*\.*\] \d+ of \d+ jobs, \d+ a second, \d+ s left \.\.\.)+")
 SHARES = re.compile(rf"(?:{re.escape(ERASE)}\[#*\.*\] [\w .:,-]+ \.\.\.)+")
 
 
@@ -69,6 +71,14 @@ def cook(boxtree, count, *options):
 
 def report(boxtree, count, *options):
     return [boxtree, "report", *["grid.obj"] * count, "--quick", "--no-times", *options]
+
+
+def cook_manifest(boxtree, count):
+    """Of `count` jobs, none of which was cooked before."""
+    with open(f"jobs{count}.jsonl", "w", encoding="ascii") as file:
+        for i in range(count):
+            file.write(json.dumps({"inputs": ["grid.obj"], "output": f"of{count}/{i}.bxt"}) + "\n")
+    return [boxtree, "cook", "--manifest", file.name]
 
 
 def find_long_work(command_of, pattern):
@@ -128,6 +138,7 @@ def main(boxtree):
         assert sent == "", f"not quiet: {sent!r}"
         for options in ([], ["--paper"]):
             find_long_work(lambda count, options=options: report(boxtree, count, *options), SHARES)
+        find_long_work(lambda count: cook_manifest(boxtree, count), JOBS)
         find_lines(boxtree)
         for command in (["cook", "grid.obj", "-o", "-"], ["export", "grid.bxt", "-o", "-"]):
             _, sent = run_on_terminal([boxtree, *command], ["stdout", "stderr"], expected=1)

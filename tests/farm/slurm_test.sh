@@ -101,7 +101,7 @@ job=$(sbatch --parsable --array=0-3 --output="$work/task.%a" "$work/farm/cook.sh
 first=
 is_in_mid_cook() {
   for task in 0 1 2 3; do
-    [ -e "$work/farm/started.$task" ] && pgrep -f "shard $task/4" >/dev/null && compgen -G "$work/farm/*.bxt" >/dev/null &&
+    [ -e "$work/farm/started.$task" ] && pgrep -f "^$boxtree cook --manifest jobs.jsonl --shard $task/4" >/dev/null && compgen -G "$work/farm/*.bxt" >/dev/null &&
       first=$task && return 0
   done
   return 1

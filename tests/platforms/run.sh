@@ -214,6 +214,11 @@ built_for_windows() {
 }
 platform_windows() {
   built_for_windows windows boxtree_c boxtree_c_static || return 0
+  # The library exports what the header declares, and nothing else.
+  x86_64-w64-mingw32-nm "$work/windows/runtime/libboxtree.dll.a" 2>/dev/null | sed -n 's/^[0-9a-f]* I __imp_//p' | sort >"$work/windows/exported"
+  sed -n 's/^BXT_API [^(]*[ *]\(bxt_[a-z0-9_]*\)(.*/\1/p' "$source/runtime/include/boxtree_c.h" | sort >"$work/windows/declared"
+  diff "$work/windows/exported" "$work/windows/declared" >"$work/windows/exports.diff" ||
+    { head -5 "$work/windows/exports.diff"; fail windows "boxtree.dll exports (left) what is not declared (right)"; return 0; }
   cp "$work/windows/runtime/boxtree.dll" "$work/windows/"
   x86_64-w64-mingw32-gcc-posix -std=c99 -O2 -I"$source/runtime/include" "$here/digests.c" -o "$work/windows/digests.exe" \
     "$work/windows/runtime/libboxtree.dll.a" || { fail windows "the program does not compile"; return 0; }
