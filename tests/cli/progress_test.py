@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Cook, of a manifest, too, and report show their steps on a terminal, and only once they have worked half a second. Elsewhere report
-prints a line a step, and cook nothing. Cook writes no file to a terminal.
+"""Cook, of a manifest, too, and report show their steps on a terminal, and only once they have worked half a
+second. Elsewhere report prints a line a step, and cook nothing. Cook writes no file to a terminal.
 
 No time here depends on the machine: the work is doubled until it is long enough to be shown, and
 silence is required only of runs that took less than half a second from start to end.
