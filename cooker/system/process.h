@@ -13,7 +13,8 @@ namespace boxtree::cooker {
 /// The most memory that the process had so far; 0 if that is not known.
 [[nodiscard]] std::uint64_t peak_bytes() noexcept;
 
-/// Of the machine; 0 if that is not known.
+/// That the process may use: the machine's, or the limit of a container or task; 0 if that is not
+/// known.
 [[nodiscard]] std::uint64_t memory_bytes() noexcept;
 
 /// Pages so far that were touched for the first time.

@@ -3,9 +3,13 @@
 #ifndef _WIN32
 #include <algorithm>
 #include <ctime>
+#include <exception>
+#include <fstream>
+#include <sstream>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "cooker/system/memory_limit.h"
 #include "cooker/system/process.h"
 
 namespace boxtree::cooker {
@@ -36,7 +40,18 @@ std::uint64_t peak_bytes() noexcept {
 
 std::uint64_t memory_bytes() noexcept {
   const auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
-  return pages * static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
+  const auto of_machine = pages * static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
+#ifdef __linux__
+  try {
+    std::ostringstream groups;
+    groups << std::ifstream("/proc/self/cgroup").rdbuf();
+    if (const auto limit = memory_limit(groups.str(), "/sys/fs/cgroup")) {
+      return std::min(of_machine, *limit);
+    }
+  } catch (const std::exception&) {  // then the machine's is the best that is known
+  }
+#endif
+  return of_machine;
 }
 
 std::uint64_t page_faults() noexcept {
