@@ -242,10 +242,14 @@ class StillSceneWarning {
   bool is_told_ = false;
 };
 
-// The file that `tree` came in, whose bytes are those of `pack`; one with a scene. Errors: those of
-// find_tree and File::member, and kNoScene.
+// The file that `tree` came in, whose bytes are those of `pack`; one with a scene. A file of
+// several trees has a name, too, which is what comes before theirs. Errors: those of find_tree and
+// File::member, and kNoScene.
 Result<File> scene_around(const File& pack, const std::string& tree) {
-  const Result<std::uint32_t> index = find_tree(pack, {tree});
+  Result<std::uint32_t> index = find_tree(pack, {tree});
+  for (std::uint32_t i = 0; !index && i < pack.tree_count(); ++i) {
+    if (pack.tree_name(i).starts_with(tree + "/")) index = i;
+  }
   if (!index) return index.error();
   Result<Member> member = pack.member(*index);
   if (!member) return member.error();
@@ -530,7 +534,8 @@ void add_query_command(Command& program, int& status) {
           ->type_name("TREE");
   command
       .add_option("--scene", arguments->scene,
-                  "Of a pack: the scene with this tree, by name or number")
+                  "Of a pack: the scene with this tree, by name or number, or the "
+                  "scene of a file of several trees")
       ->type_name("TREE")
       ->excludes(tree);
   command

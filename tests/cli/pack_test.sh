@@ -77,6 +77,7 @@ part=$(jq -r '[.trees[] | select(.member.has_scene) | .name][0]' info.json)
 "$boxtree" query all.bxt --scene "$part" "${ray[@]}" --json >packed
 cmp alone packed
 grep -q '"instance"' packed
+"$boxtree" query all.bxt --scene "${part%%/*}" "${ray[@]}" --json | cmp alone -
 "$boxtree" query a/level.bxt --scene 0 "${ray[@]}" --json | cmp alone -
 echo '{"kind":"ray","origin":[0.5,0.5,9],"direction":[0,0,-1]}' >batch
 same "$("$boxtree" query all.bxt --scene "$part" --batch batch | jq .answers)" "$("$boxtree" query a/level.bxt --batch batch | jq .answers)"
