@@ -26,23 +26,14 @@ Json budget(const std::optional<double>& limit) {
   return *limit;
 }
 
-std::string hash_text(std::uint64_t hash) {
-  return fmt::format("{:016x}", hash);
-}
-
 std::uint64_t hash_of(const Profile& profile) {
   std::string text;
   for (const std::string& line : profile.lines) text += line + "\n";
   return checksum(std::as_bytes(std::span(text)));
 }
 
-}  // namespace
-
-std::string make_cook_record(const CookOptions& options, const CookInput& input,
-                             const Profile& profile) {
-  Json record;
-  record["tool"] = fmt::format("boxtree {}", kVersion);
-  record["options"] = {
+Json options_record(const CookOptions& options) {
+  Json record = {
       {"codec", options.codec ? std::string(codec_name(*options.codec)) : "auto"},
       {"for", goal_name(options.wishes.goal)},
       {"max_bytes_per_triangle", budget(options.wishes.max_bytes_per_triangle)},
@@ -55,24 +46,57 @@ std::string make_cook_record(const CookOptions& options, const CookInput& input,
       {"precision", precision_name(options.import.precision)},
       {"skip_bad", options.import.skip_bad}};
   // Recorded only if not the default, so that records of other files stay the same.
-  if (options.materials) record["options"]["materials"] = true;
+  if (options.materials) record["materials"] = true;
   if (!options.import.user_data.empty()) {
-    record["options"]["user_data"] = options.import.user_data;
+    record["user_data"] = options.import.user_data;
   }
-  if (!options.import.face_ids.empty()) record["options"]["ids"] = options.import.face_ids;
-  if (options.active_edges) record["options"]["active_edges"] = *options.active_edges;
-  if (options.number_by_tree) record["options"]["faces"] = "reordered";
-  if (!options.costs.empty()) record["options"]["costs"] = "own";
+  if (!options.import.face_ids.empty()) record["ids"] = options.import.face_ids;
+  if (options.active_edges) record["active_edges"] = *options.active_edges;
+  if (options.number_by_tree) record["faces"] = "reordered";
+  if (!options.costs.empty()) record["costs"] = "own";
   if (options.shrink_share != kShrinkShare) {
-    record["options"]["shrink_share"] = options.shrink_share;
+    record["shrink_share"] = options.shrink_share;
   }
+  return record;
+}
+
+}  // namespace
+
+std::string recorded_hash(std::uint64_t hash) {
+  return fmt::format("{:016x}", hash);
+}
+
+std::string recorded_options(const CookOptions& options) {
+  // As they are once they have been written and read.
+  return parse_json(options_record(options).dump(-1, true)).value.dump();
+}
+
+std::optional<RecordedCook> recorded_cook(std::string_view record) {
+  const ParsedJson parsed = parse_json(record);
+  const Json* const options = parsed.value.find("options");
+  const Json* const sources = parsed.value.find("sources");
+  if (options == nullptr || sources == nullptr || parsed.value.contains("profile")) return {};
+  RecordedCook cook{options->dump(), {}};
+  for (const Json& source : *sources) {
+    const Json* const hash = source.find("xxh3");
+    if (hash == nullptr || !hash->is_string()) return {};
+    cook.sources.push_back(hash->get<std::string>());
+  }
+  return cook;
+}
+
+std::string make_cook_record(const CookOptions& options, const CookInput& input,
+                             const Profile& profile) {
+  Json record;
+  record["tool"] = fmt::format("boxtree {}", kVersion);
+  record["options"] = options_record(options);
   record["sources"] = Json::array();
   for (std::size_t i = 0; i < input.imports.size(); ++i) {
     record["sources"].push_back({{"name", input.import_names[i]},
-                                 {"xxh3", hash_text(input.imports[i].content_hash)},
+                                 {"xxh3", recorded_hash(input.imports[i].content_hash)},
                                  {"faces", input.imports[i].source_faces}});
   }
-  if (!profile.path.empty()) record["profile"] = {{"xxh3", hash_text(hash_of(profile))}};
+  if (!profile.path.empty()) record["profile"] = {{"xxh3", recorded_hash(hash_of(profile))}};
   return record.dump(-1, true) + "\n";
 }
 

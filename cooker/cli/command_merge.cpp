@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "cooker/cli/step_printer.h"
 #include "cooker/text/counted.h"
 #include "cooker/tile/merge_world.h"
+#include "cooker/tile/stale_tile.h"
 #include "cooker/write/outputs.h"
 
 namespace boxtree::cooker {
@@ -59,13 +61,48 @@ Status check_output(const Arguments& arguments, const OutputTarget& output) {
   return check_replaced(output.path, OutputKind::kCooked);
 }
 
+std::string cook_command(const Arguments& arguments) {
+  return "boxtree cook --manifest " + shown(arguments.manifest.string());
+}
+
+// Adds what makes a tile of the manifest that is missing.
+Error explained(const Arguments& arguments, const Error& error) {
+  if (arguments.manifest.empty() || error.code != Errc::kFileNotFound) return error;
+  return {error.code, error.detail + "; " + cook_command(arguments) + " makes it"};
+}
+
+// Refuses a tile that is not of its sources as they are now. The number of those that cannot be
+// compared.
+Result<std::size_t> check_sources(const Arguments& arguments, const ManifestJobs& jobs,
+                                  StepPrinter& step) {
+  using Comparison = SourceComparison::Result;
+  std::size_t unchecked = 0;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    step(fmt::format("merge: sources of file {} of {}", i + 1, jobs.size()));
+    const CookJob job = jobs.job(i);
+    const Result<File> tile = open_tile(job.output);
+    if (!tile) return tile.error();
+    const Result<SourceComparison> compared = compare_with_sources(job, *tile);
+    if (!compared) return compared.error();
+    if (compared->result == Comparison::kDiffers) {
+      return Error{Errc::kFileUnreadable,
+                   fmt::format("{}: {}: {}; cook it again: {}", jobs.place(i), job.output.string(),
+                               compared->difference, cook_command(arguments))};
+    }
+    if (compared->result == Comparison::kUnknown) ++unchecked;
+  }
+  return unchecked;
+}
+
 int run(Arguments& arguments) {
   if (is_standard_stream(arguments.output) && arguments.json) {
     return usage("merge: --json and -o - cannot share standard output");
   }
+  std::optional<ManifestJobs> jobs;
   if (!arguments.manifest.empty()) {
-    const Result<ManifestJobs> jobs = ManifestJobs::read(arguments.manifest);
-    if (!jobs) return fail(jobs.error());
+    Result<ManifestJobs> read = ManifestJobs::read(arguments.manifest);
+    if (!read) return fail(read.error());
+    jobs.emplace(std::move(*read));
     for (std::size_t i = 0; i < jobs->size(); ++i) arguments.files.push_back(jobs->job(i).output);
   }
   if (arguments.files.empty()) return usage("merge: expected tiles, found none");
@@ -75,21 +112,31 @@ int run(Arguments& arguments) {
     return usage("merge: " + status.error().detail);
   }
   StepPrinter step(!arguments.quiet);
+  std::size_t unchecked = arguments.files.size();
+  if (jobs) {
+    const Result<std::size_t> checked = check_sources(arguments, *jobs, step);
+    step.clear();
+    if (!checked) return fail(explained(arguments, checked.error()));
+    unchecked = *checked;
+    if (unchecked > 0) {
+      warn(
+          fmt::format("{}: {} of {} not compared with the sources, which are not here, or the "
+                      "tile has no cook record (--strip)",
+                      input_name(arguments.manifest), unchecked, counted(jobs->size(), "tile")));
+    }
+  }
   const Result<MergeReport> report =
       merge_world(*output, arguments.files, open_tile,
                   [&](const std::string& text) { step("merge: " + text); });
   step.clear();
-  if (!report && report.code() == Errc::kFileNotFound && !arguments.manifest.empty()) {
-    return fail({report.code(), report.error().detail + "; boxtree cook --manifest " +
-                                    shown(arguments.manifest.string()) + " makes it"});
-  }
-  if (!report) return fail(report.error());
+  if (!report) return fail(explained(arguments, report.error()));
   if (arguments.json) {
     print(Json{{"output", output->title()},
                {"bytes", report->bytes},
                {"trees", report->trees},
                {"faces", report->faces},
-               {"triangles", report->triangles}});
+               {"triangles", report->triangles},
+               {"unchecked", unchecked}});
   } else if (!arguments.quiet) {
     tell(*output, fmt::format("{}: {} in {}, {} bytes\n", shown(output->title()),
                               counted(report->triangles, "triangle"),
