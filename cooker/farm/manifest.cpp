@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <system_error>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "cooker/farm/real_names.h"
 #include "cooker/system/path.h"
 #include "cooker/text/json.h"
 #include "cooker/text/nearest_name.h"
@@ -21,12 +21,6 @@ namespace fs = std::filesystem;
 
 // An object of arrays of texts.
 constexpr std::size_t kDeepest = 2;
-
-std::string absolute_name(const fs::path& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
-  return (error ? path : absolute).lexically_normal().string();
-}
 
 class LineReader {
  public:
@@ -115,9 +109,10 @@ class LineReader {
 
 // Outputs of one run that would overwrite each other, or what another job reads.
 Status check_paths(const std::vector<ManifestLine>& lines, const std::string& name) {
-  std::map<std::string, std::size_t> outputs;  // and their lines
+  RealNames names;
+  std::unordered_map<std::string, std::size_t> outputs;  // and their lines
   for (const ManifestLine& line : lines) {
-    const auto [first, is_new] = outputs.emplace(absolute_name(line.output), line.line);
+    const auto [first, is_new] = outputs.emplace(names.of(line.output), line.line);
     if (is_new) continue;
     return Error{Errc::kDocumentInvalid,
                  fmt::format("{}:{}: output: {} is that of line {}, too", name, line.line,
@@ -127,7 +122,7 @@ Status check_paths(const std::vector<ManifestLine>& lines, const std::string& na
     std::vector<fs::path> read = line.inputs;
     if (!line.profile.empty()) read.push_back(line.profile);
     for (const fs::path& input : read) {
-      const auto output = outputs.find(absolute_name(input));
+      const auto output = outputs.find(names.of(input));
       if (output == outputs.end()) continue;
       return Error{Errc::kDocumentInvalid,
                    fmt::format("{}:{}: inputs: {} is the output of line {}", name, line.line,

@@ -28,8 +28,8 @@ struct ManifestLine {
 /// The jobs of a manifest, in its order; blank lines are none. All is checked before anything is
 /// cooked: that each line is an object with these members and no other, that no output is that of
 /// two lines, and that none is an input of another line, whose cook would come before or after.
-/// Outputs are compared as absolute paths without "." and "..". `name`: the manifest, for messages.
-/// Error: kDocumentInvalid with the first fault, "jobs.jsonl:3: ...".
+/// Files are compared by their real names, behind links of folders and of their own. `name`: the
+/// manifest, for messages. Error: kDocumentInvalid with the first fault, "jobs.jsonl:3: ...".
 Result<std::vector<ManifestLine>> parse_manifest(std::string_view text, const std::string& name);
 
 }  // namespace boxtree::cooker

@@ -2,16 +2,20 @@
 // Lines of a manifest, and what is wrong with lines that are none.
 #include "cooker/farm/manifest.h"
 
+#include <filesystem>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/require.h"
+#include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {
 namespace {
 
 using test::require;
+namespace fs = std::filesystem;
 
 TEST(Manifest, HasAJobInEachLine) {
   const auto lines =
@@ -77,6 +81,37 @@ TEST(Manifest, RefusesOutputsThatMeetOthers) {
             "jobs.jsonl:3: inputs: out/a.bxt is the output of line 1");
   EXPECT_EQ(refusal(first + "{\"profile\":\"out/a.bxt\",\"output\":\"b.bxt\"}"),
             "jobs.jsonl:3: inputs: out/a.bxt is the output of line 1");
+}
+
+// Found by an audit: a link of a folder, or of a file, hid that two lines write one file.
+TEST(Manifest, RefusesOutputsThatMeetOthersBehindLinks) {
+  const test::TempFolder folder;
+  fs::create_directory(folder.path() / "real");
+  fs::create_directory_symlink("real", folder.path() / "link");
+  fs::create_symlink("real/a.bxt", folder.path() / "a.bxt");
+  const auto line = [&](const std::string& input, const std::string& output) {
+    return fmt::format(R"({{"inputs":["{0}/{1}"],"output":"{0}/{2}"}})", folder.path().string(),
+                       input, output) +
+           "\n";
+  };
+  const std::string first = line("a.obj", "real/a.bxt");
+  const std::string at = folder.path().string() + "/";
+  EXPECT_EQ(refusal(first + line("b.obj", "link/a.bxt")),
+            "jobs.jsonl:2: output: " + at + "link/a.bxt is that of line 1, too");
+  EXPECT_EQ(refusal(first + line("b.obj", "link/../real/new/../a.bxt")),
+            "jobs.jsonl:2: output: " + at + "link/../real/new/../a.bxt is that of line 1, too");
+  EXPECT_EQ(refusal(first + line("b.obj", "a.bxt")),
+            "jobs.jsonl:2: output: " + at + "a.bxt is that of line 1, too");
+  EXPECT_EQ(refusal(first + line("link/a.bxt", "b.bxt")),
+            "jobs.jsonl:2: inputs: " + at + "link/a.bxt is the output of line 1");
+  // Also where the folders of the outputs are not there yet.
+  EXPECT_EQ(refusal(line("a.obj", "real/new/a.bxt") + line("b.obj", "link/new/a.bxt")),
+            "jobs.jsonl:2: output: " + at + "link/new/a.bxt is that of line 1, too");
+  EXPECT_EQ(refusal(first + line("b.obj", "link/b.bxt")), "accepted");
+  // Not by the text: what ".." leads to behind a link.
+  fs::create_directories(folder.path() / "far/away");
+  fs::create_directory_symlink("far/away", folder.path() / "there");
+  EXPECT_EQ(refusal(line("a.obj", "b.bxt") + line("b.obj", "there/../b.bxt")), "accepted");
 }
 
 }  // namespace
