@@ -216,9 +216,12 @@ class KeyFields {
     out = std::move(texts);
     return true;
   }
+  // The system takes a name to end at a NUL.
   static bool convert(const Json& value, std::filesystem::path& out) {
-    if (value.is_string()) out = named_path(value.get<std::string>());
-    return value.is_string();
+    std::string name;
+    if (!convert(value, name) || name.find('\0') != std::string::npos) return false;
+    out = named_path(name);
+    return true;
   }
   static bool convert(const Json& value, bool& out) {
     if (value.is_boolean()) out = value.get<bool>();
@@ -239,7 +242,7 @@ class KeyFields {
   static const char* form_of(const std::vector<std::string>&) {
     return "INSTANCE=POSE as a text (\"Crate=1,2,3\"), or an array of such";
   }
-  static const char* form_of(const std::filesystem::path&) { return "a text"; }
+  static const char* form_of(const std::filesystem::path&) { return "the name of a file"; }
   static const char* form_of(bool) { return "true or false"; }
   static const char* form_of(std::uint64_t) { return "a whole number, 0 or more"; }
 

@@ -71,7 +71,13 @@ class LineReader {
     if (!value.is_string()) {
       return fault(fmt::format("{}: expected a text, found {}", key, value.type_name()));
     }
-    if (value.get<std::string>().empty()) return fault(fmt::format("{}: found an empty text", key));
+    const std::string text = value.get<std::string>();
+    if (text.empty()) return fault(fmt::format("{}: found an empty text", key));
+    // The system takes a name to end there.
+    if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
+      return fault(fmt::format("{}: expected a text without NUL characters, found one at byte {}",
+                               key, nul + 1));
+    }
     return {};
   }
 

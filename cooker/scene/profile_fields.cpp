@@ -102,8 +102,16 @@ std::optional<Stated<std::string>> Fields::text(std::string_view key) {
   const TomlEntry* entry = find(key);
   if (entry == nullptr) return std::nullopt;
   const auto* value = std::get_if<std::string>(&entry->node.value);
-  if (value != nullptr && !value->empty()) return Stated<std::string>{*value, entry->line};
-  complaints_.expected(entry->line, key, "a text that is not empty", shown(entry->node));
+  // The system takes a name to end there.
+  const std::size_t nul = value == nullptr ? std::string::npos : value->find('\0');
+  if (nul != std::string::npos) {
+    complaints_.expected(entry->line, key, "a text without NUL characters",
+                         fmt::format("one at byte {}", nul + 1));
+  } else if (value != nullptr && !value->empty()) {
+    return Stated<std::string>{*value, entry->line};
+  } else {
+    complaints_.expected(entry->line, key, "a text that is not empty", shown(entry->node));
+  }
   return std::nullopt;
 }
 

@@ -989,6 +989,8 @@ names "cast: expected the keys at, direction, sphere, capsule, box, hull, rotati
 "did you mean 'sphere'?" '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"spere":1}'
 names 'frustum: "matrix": expected an array of 16 numbers, found [1]' '{"kind":"frustum","matrix":[1]}'
 names 'contacts: expected the keys first, points, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
+# Found by an audit: names of files were cut at a NUL.
+names 'cast: "hull": expected the file of a mesh, found "a\u0000.obj"' '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"hull":"a\u0000.obj"}'
 names '"kind": expected a text, found 3' '{"kind":3}'
 kinds='ray, cast, collide, box, sphere, frustum, point, pair, distance, overlap or contacts'
 # A misspelt key, not the one that is missing because of it.

@@ -114,5 +114,17 @@ TEST(Manifest, RefusesOutputsThatMeetOthersBehindLinks) {
   EXPECT_EQ(refusal(line("a.obj", "b.bxt") + line("b.obj", "there/../b.bxt")), "accepted");
 }
 
+// Found by an audit: the text behind a NUL was cut off, so that another file was read or written.
+TEST(Manifest, RefusesTextsWithANul) {
+  EXPECT_EQ(refusal("{\"inputs\":[\"a.obj\"],\"output\":\"a\\u0000b.bxt\"}"),
+            "jobs.jsonl:1: output: expected a text without NUL characters, found one at byte 2");
+  EXPECT_EQ(refusal("{\"inputs\":[\"a.obj\\u0000\"],\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: inputs: expected a text without NUL characters, found one at byte 6");
+  EXPECT_EQ(refusal("{\"inputs\":[\"a.obj\"],\"output\":\"a.bxt\",\"options\":[\"\\u0000\"]}"),
+            "jobs.jsonl:1: options: expected a text without NUL characters, found one at byte 1");
+  EXPECT_EQ(refusal("{\"profile\":\"a\\u0000.toml\",\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: profile: expected a text without NUL characters, found one at byte 2");
+}
+
 }  // namespace
 }  // namespace boxtree::cooker

@@ -272,6 +272,9 @@ constexpr ProfileFault kTypes[] = {
      "scene.toml:3: queries: expected texts that are not empty, found 7"},
     {"[scene]\nsource = ''\n",
      "scene.toml:2: source: expected a text that is not empty, found \"\""},
+    // Found by an audit: names of files were cut at a NUL.
+    {"[scene]\nsource = \"a\\u0000b.obj\"\n",
+     "scene.toml:2: source: expected a text without NUL characters, found one at byte 2"},
     {"[scene]\nsource = 1979-05-27\n",
      "scene.toml:2: source: expected a text that is not empty, found a date or time"},
     {"scene = 3\n", "scene.toml:1: scene: expected a table [scene], found 3"},
