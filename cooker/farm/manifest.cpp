@@ -45,10 +45,14 @@ class LineReader {
     ManifestLine line;
     line.line = number;
     static const std::array<std::string, 4> kKeys = {"inputs", "output", "options", "profile"};
-    for (const std::string& key : parsed.keys) {
-      if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) continue;
-      return fault(
-          fmt::format("expected {}, found \"{}\"{}", listed(kKeys), key, suggestion(key, kKeys)));
+    for (auto key = parsed.keys.begin(); key != parsed.keys.end(); ++key) {
+      if (std::find(kKeys.begin(), kKeys.end(), *key) == kKeys.end()) {
+        return fault(fmt::format("expected {}, found \"{}\"{}", listed(kKeys), *key,
+                                 suggestion(*key, kKeys)));
+      }
+      if (std::find(parsed.keys.begin(), key, *key) != key) {
+        return fault(*key + ": expected once, found twice");
+      }
     }
     const Json& object = parsed.value;
     if (Status status = take_texts(object, "inputs", line.inputs); !status) return status.error();

@@ -126,5 +126,13 @@ TEST(Manifest, RefusesTextsWithANul) {
             "jobs.jsonl:1: profile: expected a text without NUL characters, found one at byte 2");
 }
 
+// Found by an audit: the last of several members of one name counted, and no job had the others.
+TEST(Manifest, RefusesMembersThatComeTwice) {
+  EXPECT_EQ(refusal("{\"inputs\":[\"a.obj\"],\"inputs\":[\"b.obj\"],\"output\":\"a.bxt\"}"),
+            "jobs.jsonl:1: inputs: expected once, found twice");
+  EXPECT_EQ(refusal("{\"inputs\":[\"a.obj\"],\"output\":\"a.bxt\",\"output\":\"b.bxt\"}"),
+            "jobs.jsonl:1: output: expected once, found twice");
+}
+
 }  // namespace
 }  // namespace boxtree::cooker
