@@ -189,7 +189,7 @@ same "$(jq -c '[.error.name, .error.status, .error.may_pass]' out)" '["write_fai
 mkdir -p folder
 echo notes >notes.txt
 printf '{"inputs":["in/m1.obj"],"output":"%s"}\n' notes.txt folder notes.txt/m.bxt /dev/null >names.jsonl
-echo '{"inputs":["folder"],"output":"cooked/folder.bxt"}' >>names.jsonl
+echo '{"inputs":["in"],"output":"cooked/folder.bxt"}' >>names.jsonl
 expect 3 "$boxtree" cook --manifest names.jsonl --json
 same "$(jq -c '[.line, .error.status, .error.may_pass]' out | sort | xargs)" \
   '[1,2,false] [2,2,false] [3,2,false] [4,2,false] [5,2,false]'
@@ -248,7 +248,7 @@ cmp two.bxt two_single.bxt
 expect 0 "$boxtree" cook --profile scene.toml -o scene_single.bxt
 cmp scene.bxt scene_single.bxt
 echo 'no cooked file' >cooked/m1.bxt # would be lost
-status=2 cook_all --journal other.done
+status=3 cook_all --journal other.done
 same "$(cat cooked/m1.bxt)" 'no cooked file'
 same "$(jq -r 'select(.error) | .line' out.jsonl)" 1
 
