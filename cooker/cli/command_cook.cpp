@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -110,13 +111,15 @@ int cook_through_cache(const Arguments& arguments, const CookCache& cache) {
                             [&steps](const std::string& step) { steps(step); });
     });
   }
-  warn_of_cache(&cache);
+  const std::vector<std::string> of_cache = warn_of_cache(&cache);
   if (!outcome) return fail(explained(outcome.error(), job, job.output.string()));
   warn_all(outcome->report);
   if (outcome->difference) return fail_by(*outcome->difference);
   const double seconds = seconds_since(start);
   if (arguments.json) {
-    print(outcome_json(job.output.string(), key->key, *outcome, seconds));
+    Json document = outcome_json(job.output.string(), key->key, *outcome, seconds);
+    add_warnings(of_cache, document);
+    print(document);
   } else if (outcome->summary && !arguments.quiet) {
     fmt::print("{}", report_text(arguments, job.output.string(), *outcome->summary, seconds));
   } else if (!arguments.quiet) {

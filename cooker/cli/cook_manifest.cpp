@@ -212,7 +212,7 @@ class Run {
   void tell(const Line& line) {
     const std::string place = jobs_.place(line.job);
     steps_.clear();
-    warn_of_cache(run_.cache);
+    const std::vector<std::string> of_cache = warn_of_cache(run_.cache);
     if (!line.outcome) {
       has_failed_ = true;
       const Error error = in_file(place, line.error);
@@ -225,7 +225,9 @@ class Run {
       warn_all(line.outcome->report, place);
     }
     if (!run_.json) return;
-    fmt::print("{}\n", line_of(to_json(line)));
+    Json document = to_json(line);
+    add_warnings(of_cache, document);
+    fmt::print("{}\n", line_of(std::move(document)));
     static_cast<void>(std::fflush(stdout));  // a run that is killed has said what it did
   }
 

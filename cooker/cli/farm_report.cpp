@@ -42,9 +42,23 @@ void warn_all(const std::string& report, const std::string& place) {
   }
 }
 
-void warn_of_cache(const CookCache* cache) {
-  if (cache == nullptr) return;
-  for (const std::string& warning : cache->take_warnings()) warn("--cache: " + warning);
+std::vector<std::string> warn_of_cache(const CookCache* cache) {
+  if (cache == nullptr) return {};
+  std::vector<std::string> warnings = cache->take_warnings();
+  for (std::string& warning : warnings) {
+    warning = "--cache: " + warning;
+    warn(warning);
+  }
+  return warnings;
+}
+
+void add_warnings(const std::vector<std::string>& of_cache, Json& document) {
+  if (of_cache.empty()) return;
+  Json warnings = Json::array_of(std::span<const std::string>(of_cache));
+  if (const Json* const of_cook = document.find("warnings")) {
+    for (const Json& warning : *of_cook) warnings.push_back(warning);
+  }
+  document["warnings"] = std::move(warnings);
 }
 
 int fail_by(const Error& difference) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cooker/cli/json_output.h"
 #include "cooker/farm/keyed_cook.h"
@@ -19,8 +20,12 @@ namespace boxtree::cooker {
 /// Prints them as warnings; each begins with `place`, if it is not empty.
 void warn_all(const std::string& report, const std::string& place = "");
 
-/// Prints what is new of take_warnings() as warnings. Null: there is no cache.
-void warn_of_cache(const CookCache* cache);
+/// Prints what is new of take_warnings() as warnings, and returns them as they were printed. Null:
+/// there is no cache.
+std::vector<std::string> warn_of_cache(const CookCache* cache);
+
+/// Puts them in front of "warnings" of the document of a job, which need not have any.
+void add_warnings(const std::vector<std::string>& of_cache, Json& document);
 
 /// Prints what an audit has found. Its exit status.
 int fail_by(const Error& difference);

@@ -347,6 +347,23 @@ for cached in false true; do
   same "$(jq -c '[.cached, (.warnings | length)]' out)" "[$cached,1]"
 done
 
+# Found by an audit: warnings of the cache itself were on standard error alone.
+for cache in http://127.0.0.1:1/x broken; do
+  rm -rf broken/ac broken/cas lost.done
+  mkdir -p broken/ac broken/cas
+  for i in 0 1 2 3 4 5 6 7 8 9 a b c d e f; do
+    for j in 0 1 2 3 4 5 6 7 8 9 a b c d e f; do echo file >"broken/cas/$i$j"; done
+  done
+  expect 0 "$boxtree" cook lost.obj -o lost.bxt --cache "$cache" --json
+  same "$(jq -r '.warnings[]' out)" "$(sed -n 's/^boxtree: warning: //p' err)"
+  same "$(jq -r '.warnings[]' out | grep -c '^--cache: ')" 1
+  grep -q 'lost.mtl' out
+  echo '{"inputs":["lost.obj"],"output":"lost.bxt"}' >lost.jsonl
+  expect 0 "$boxtree" cook --manifest lost.jsonl --cache "$cache" --json --journal lost.done
+  same "$(jq -r '.warnings[]' out | sed 's/^lost.obj/lost.jsonl:1: lost.obj/')" "$(sed -n 's/^boxtree: warning: //p' err)"
+  same "$(jq -r '.warnings[]' out | grep -c '^--cache: ')" 1
+done
+
 # Formats that assimp reads are first tried in another process, while other threads cook.
 for i in $(seq 1 12); do
   cp "$level" "in/level$i.gltf"
