@@ -41,6 +41,18 @@ struct Arguments {
   bool json = false;
 };
 
+// Of the first error, 0 if there is none.
+class ExitStatus {
+ public:
+  void add(int status) {
+    if (status_ == 0) status_ = status;
+  }
+  [[nodiscard]] int value() const { return status_; }
+
+ private:
+  int status_ = 0;
+};
+
 // A member that is to be written.
 struct Chosen {
   std::string name;
@@ -54,9 +66,6 @@ Result<std::vector<Chosen>> choose_members(const Arguments& arguments, const Fil
   for (const std::string& tree : arguments.trees) {
     const Result<std::uint32_t> number = find_tree(pack, {tree});
     if (!number) return in_file(input_name(arguments.file), number.error());
-    if (Result<Member> member = pack.member(*number); !member) {
-      return in_file(input_name(arguments.file), member.error());
-    }
     wanted.push_back(*number);
   }
   std::sort(wanted.begin(), wanted.end());
@@ -74,6 +83,9 @@ Result<std::vector<Chosen>> choose_members(const Arguments& arguments, const Fil
 }
 
 Status write_member(const File& pack, const Chosen& member) {
+  if (const Findings findings = check_member(pack, member.name, member.trees); !findings.empty()) {
+    return findings.front();
+  }
   const Result<Member> file = pack.member(member.trees.front());
   if (!file) return file.error();
   if (Status status = verify_checksums(file->file); !status) {
@@ -102,8 +114,11 @@ int run(const Arguments& arguments) {
         "cook each mesh to a file of its own, and pack these",
         name, counted(pack.tree_count(), "tree"), pack.tree_count() == 1 ? "was" : "were"));
   }
-  if (const Findings findings = check_pack(pack); !findings.empty()) {
-    return fail(in_file(name, findings.front()));
+  ExitStatus exit_status;
+  for (const Error& finding : check_pack_index(pack)) {
+    // Bytes between members are of none; whatever else is wrong says of no member where it is.
+    if (finding.code != Errc::kPaddingNotZero) return fail(in_file(name, finding));
+    exit_status.add(fail(in_file(name, finding)));
   }
   const Result<std::vector<Chosen>> chosen = choose_members(arguments, pack);
   if (!chosen) return fail(chosen.error());
@@ -115,14 +130,19 @@ int run(const Arguments& arguments) {
   StepPrinter step(!arguments.quiet);
   Json files = Json::array();
   std::uint64_t bytes = 0;
+  std::size_t written = 0;
   for (std::size_t i = 0; i < chosen->size(); ++i) {
     const Chosen& member = (*chosen)[i];
     step(fmt::format("split: file {} of {}", i + 1, chosen->size()));
     if (Status status = write_member(pack, member); !status) {
       step.clear();
-      return fail(status.code() == Errc::kWriteFailed ? status.error()
-                                                      : in_file(name, status.error()));
+      // Where one cannot be written, the others cannot either. Damage is of one alone.
+      const bool is_damaged = status.code() != Errc::kWriteFailed;
+      exit_status.add(fail(is_damaged ? in_file(name, status.error()) : status.error()));
+      if (!is_damaged) return exit_status.value();
+      continue;
     }
+    ++written;
     const std::uint64_t size = OpenFile::of(pack).pack_row(member.trees.front()).bytes;
     bytes += size;
     if (!arguments.json) continue;
@@ -137,10 +157,10 @@ int run(const Arguments& arguments) {
   if (arguments.json) {
     print(Json{{"files", std::move(files)}});
   } else if (!arguments.quiet) {
-    fmt::print("{}: {}, {} bytes\n", shown(arguments.folder.string()),
-               counted(chosen->size(), "file"), bytes);
+    fmt::print("{}: {}, {} bytes\n", shown(arguments.folder.string()), counted(written, "file"),
+               bytes);
   }
-  return 0;
+  return exit_status.value();
 }
 
 }  // namespace
@@ -152,7 +172,8 @@ void add_split_command(Command& program, int& status) {
       "Take the files out of a pack, as they were put in\n"
       "A file is called after its name in the pack, with .bxt behind it; each / of the name makes "
       "a "
-      "folder, and characters that no file may have on some system are written %XX.");
+      "folder, and characters that no file may have on some system are written %XX. A file that is "
+      "damaged is told and left out.");
   command.add_file("FILE", arguments->file, Values::kCookedFiles, "A pack; - is standard input")
       ->required();
   command.add_file("-o,--output", arguments->folder, Values::kFolders, "Where to write")

@@ -2,6 +2,8 @@
 #include "cooker/proof/pack_proof.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -10,6 +12,7 @@
 
 #include "cooker/proof/names.h"
 #include "format/bytes.h"
+#include "format/container.h"
 #include "format/limits.h"
 #include "format/pack.h"
 #include "runtime/file/open_file.h"
@@ -51,11 +54,19 @@ std::vector<MemberRows> members_of(const OpenFile& file) {
 
 class PackCheck {
  public:
-  explicit PackCheck(const OpenFile& open) : open_(open) {}
+  enum class What : std::uint8_t { kIndex, kAll };
+
+  explicit PackCheck(const OpenFile& open, What what = What::kAll) : open_(open), what_(what) {}
+
+  Findings run_on_member(std::string_view name, std::span<const std::uint32_t> rows) {
+    check_trees("member " + std::string(name), name, rows);
+    return std::move(findings_);
+  }
 
   Findings run() {
     if (open_.container().find(SectionKind::kTrees, kNoOwner) != nullptr) {
-      add(Errc::kRecordInvalid, "a pack has no section trees");
+      add(Errc::kRecordInvalid,
+          "a pack has no section " + std::string(section_name(SectionKind::kTrees)));
     }
     bool are_names_valid = true;
     for (std::uint32_t i = 0; i < open_.tree_count(); ++i) {
@@ -116,7 +127,7 @@ class PackCheck {
         add(Errc::kRecordInvalid, place + ": its name is not after that of the member before");
       }
       name_before = name;
-      check_trees(place, name, member);
+      if (what_ == What::kAll) check_trees(place, name, member.rows);
     }
     if (end != members.size()) {
       add(Errc::kRecordInvalid, "section members has " + std::to_string(members.size() - end) +
@@ -124,14 +135,15 @@ class PackCheck {
     }
   }
 
-  void check_trees(const std::string& place, std::string_view name, const MemberRows& member) {
-    const Result<File> file = open_.open_member(member.rows.front());
+  void check_trees(const std::string& place, std::string_view name,
+                   std::span<const std::uint32_t> rows) {
+    const Result<File> file = open_.open_member(rows.front());
     if (!file) {
       add(file.code(), place + ": " + file.error().detail);
       return;
     }
     std::vector<std::uint32_t> trees;
-    for (const std::uint32_t row : member.rows) {
+    for (const std::uint32_t row : rows) {
       trees.push_back(open_.pack_row(row).tree);
       if (member_name(open_, row) != name ||
           (open_.tree_name(row).size() == name.size()) != (file->tree_count() == 1)) {
@@ -149,6 +161,7 @@ class PackCheck {
   }
 
   const OpenFile& open_;
+  const What what_;
   Findings findings_;
 };
 
@@ -156,6 +169,15 @@ class PackCheck {
 
 Findings check_pack(const File& file) {
   return PackCheck(OpenFile::of(file)).run();
+}
+
+Findings check_pack_index(const File& file) {
+  return PackCheck(OpenFile::of(file), PackCheck::What::kIndex).run();
+}
+
+Findings check_member(const File& file, std::string_view name,
+                      std::span<const std::uint32_t> trees) {
+  return PackCheck(OpenFile::of(file)).run_on_member(name, trees);
 }
 
 void for_each_member(

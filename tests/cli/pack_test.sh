@@ -145,6 +145,33 @@ expect 3 "$boxtree" verify broken.bxt
 grep -q 'checksum_mismatch' err
 expect 3 "$boxtree" split broken.bxt --tree tree -o broken
 expect 0 "$boxtree" split broken.bxt --tree rock -o broken
+# Found by an audit: what was sound behind a damaged file, or beside one without a header, stayed in the pack.
+damaged_at() { # BYTE: of all.bxt, in ./broken.bxt
+  { head -c "$1" all.bxt; printf '\125'; tail -c +$(($1 + 2)) all.bxt; } >broken.bxt
+}
+begin=$(python3 - <<'PYTHON'
+pack, rock = open("all.bxt", "rb").read(), open("a/rock.bxt", "rb").read()
+print(pack.index(rock))
+PYTHON
+)
+for at in $((begin + 1)) $((begin + 700)); do # its first bytes, its sections
+  damaged_at "$at"
+  rm -rf broken
+  expect 3 "$boxtree" split broken.bxt -o broken
+  same "$(ls broken | xargs)" 'level.bxt tree.bxt'
+  for file in level tree; do cmp a/$file.bxt broken/$file.bxt; done
+  same "$(grep -c '^boxtree: .*: broken.bxt: member rock: ' err)" "$(wc -l <err)"
+  grep -q '^broken: 2 files, ' out
+  expect 3 "$boxtree" split broken.bxt -o broken --json
+  same "$(jq -c '[.files[].member]' out)" '["level","tree"]'
+done
+# Both others: the status is that of the first, and each is told.
+{ head -c $((begin + 8)) broken.bxt; printf '\2'; tail -c +$((begin + 10)) broken.bxt; } >twice.bxt
+{ head -c $((size - 200)) twice.bxt; printf '\125'; tail -c 199 twice.bxt; } >broken.bxt
+rm -rf broken
+expect 5 "$boxtree" split broken.bxt -o broken
+same "$(ls broken)" level.bxt
+same "$(cut -d: -f2,4 err | xargs)" 'version_unsupported: member rock checksum_mismatch: member tree'
 
 # The second reader agrees.
 /usr/bin/python3 "$golden/read_bxt.py" all.bxt >theirs
