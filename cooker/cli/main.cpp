@@ -14,6 +14,7 @@
 #include "cooker/cli/exit_status.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/program_start.h"
+#include "cooker/farm/import_libraries.h"
 #include "cooker/import/assimp_import.h"
 #include "cooker/version.h"
 #include "runtime/blob/compressor.h"
@@ -31,8 +32,10 @@ namespace {
 // All versions that bytes of a file may depend on, for keys of caches.
 std::string version_text() {
   using namespace boxtree;
-  return fmt::format("boxtree {}\nassimp {}, liblzma {}, zstd {}", cooker::kVersion,
-                     cooker::assimp_version(), lzma_version(), zstd_version());
+  const std::string& libraries = cooker::import_libraries();
+  return fmt::format("boxtree {}\nassimp {}, liblzma {}, zstd {}{}{}", cooker::kVersion,
+                     cooker::assimp_version(), lzma_version(), zstd_version(),
+                     libraries.empty() ? "" : "\n", libraries);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "cooker/farm/cooker_identity.h"
+#include "cooker/farm/import_libraries.h"
+#include "cooker/import/import.h"
 #include "cooker/text/json.h"
 #include "cooker/text/percent.h"
 #include "format/container.h"
@@ -123,11 +125,23 @@ std::string line_of(FileRole role, const Digest& digest, const std::filesystem::
   return fmt::format("{} {}{}\n", role_name(role), hex_of(digest), name);
 }
 
+// Other meshes are read by this program alone.
+bool is_read_by_assimp(const CookJob& job, const std::vector<KeyedFile>& files) {
+  const std::optional<SourceBytes>& bytes = job.options.import.bytes;
+  return (bytes && has_node_graph(bytes->file_name)) ||
+         std::any_of(files.begin(), files.end(), [](const KeyedFile& each) {
+           return each.file.role == FileRole::kMesh && has_node_graph(each.file.path);
+         });
+}
+
 }  // namespace
 
 std::string key_text(const CookJob& job, const std::vector<KeyedFile>& files) {
   std::string text = fmt::format("boxtree key {}\nformat {}.{}\n{}\n{}\n", kKeyForm, kVersionMajor,
                                  kVersionMinor, cooker_identity(), form_of(job).dump(-1, true));
+  if (!import_libraries().empty() && is_read_by_assimp(job, files)) {
+    text += "libraries " + import_libraries() + "\n";
+  }
   if (const std::optional<SourceBytes>& bytes = job.options.import.bytes) {
     text += line_of(FileRole::kMesh, sha256_of(bytes->bytes), bytes->file_name);
   }

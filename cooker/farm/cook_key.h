@@ -27,10 +27,10 @@ struct JobKey {
   std::vector<KeyedFile> files;  // all that the cook reads, as list_job_files
 };
 
-/// The key of a job: SHA-256 over the version of the format, cooker_identity(), the options in one
-/// canonical form, and the digests of all files that the cook reads, each with its name where names
-/// go into the output (trees are called after their files). Folders, the output, threads and the
-/// time of files are not in it.
+/// The key of a job: SHA-256 over the version of the format, cooker_identity(), import_libraries()
+/// if assimp reads one of the meshes, the options in one canonical form, and the digests of all
+/// files that the cook reads, each with its name where names go into the output (trees are called
+/// after their files). Folders, the output, threads and the time of files are not in it.
 ///
 /// Precondition: job.options is what a command line makes of its options: `costs`, `known_edges`,
 /// `keep_all` and `face_order` have their defaults. Reads every file once. Errors: those of

@@ -12,8 +12,8 @@ namespace boxtree::cooker {
 /// (cmake/BoxtreeSourceDigest.cmake).
 extern const std::string_view kSourceDigest;
 
-/// Versions of boxtree and of the libraries that decide bytes, and kSourceDigest. Equal texts:
-/// equal bytes for equal inputs and options.
+/// Versions of boxtree and of the libraries that decide bytes, and kSourceDigest. Equal texts, and
+/// of meshes that assimp reads equal import_libraries(): equal bytes for equal inputs and options.
 [[nodiscard]] std::string cooker_identity();
 
 }  // namespace boxtree::cooker

@@ -19,6 +19,7 @@
 
 #include "cooker/cli/command.h"
 #include "cooker/cli/commands.h"
+#include "cooker/farm/import_libraries.h"
 #include "tests/unit/farm/farm_fixture.h"
 
 namespace boxtree::cooker {
@@ -353,6 +354,23 @@ Words random_words(std::mt19937& random) {
   Words words;
   for (const Words& each : chosen) words.insert(words.end(), each.begin(), each.end());
   return words;
+}
+
+// Found by an audit: draco decodes positions for assimp, and no key said which.
+TEST(CookKey, HasTheLibrariesOfAssimpWhereItReads) {
+  const test::TempFolder folder;
+  test::write_sources(folder);
+  const auto text = [&](const char* input) {
+    const CookJob job = job_in(folder.path(), {input}, {});
+    return key_text(job, require(key_of(job)).files);
+  };
+  const std::string line = "\nlibraries " + import_libraries() + "\n";
+  EXPECT_EQ(text("m.obj").find("\nlibraries "), std::string::npos);
+  EXPECT_EQ(text("g.gltf").find(line) != std::string::npos, !import_libraries().empty());
+  if (import_libraries().empty()) GTEST_SKIP() << "assimp is a part of the program";
+  EXPECT_TRUE(import_libraries().starts_with("libassimp"));
+  EXPECT_EQ(import_libraries().find("libc.so"), std::string::npos);
+  EXPECT_EQ(import_libraries().find("unknown"), std::string::npos);
 }
 
 TEST(CookKey, EqualKeysGiveEqualBytes) {
