@@ -203,8 +203,15 @@ class Run {
     Journal* const journal = stores_.journal;
     if (journal == nullptr || run_.farm.reread) return key_of(job);
     bool is_remembered = false;
-    Result<JobKey> key =
-        key_of(job, [&](const fs::path& file) { return journal->digest_of(file, &is_remembered); });
+    const auto digest_of = [&](const fs::path& file) {
+      return journal->digest_of(file, &is_remembered);
+    };
+    const auto list_files = [&](const fs::path& mesh, const ImportOptions& options) {
+      if (!may_refer_to_files(mesh)) return list_source_files(mesh, options);
+      const auto find = [&] { return find_source_files(mesh, options); };
+      return journal->files_of(mesh, find, &is_remembered);
+    };
+    Result<JobKey> key = key_of(job, digest_of, list_files);
     if (key && is_remembered && !journal->find(job.output, key->key, true)) return key_of(job);
     return key;
   }

@@ -149,8 +149,8 @@ std::string key_text(const CookJob& job, const std::vector<KeyedFile>& files) {
   return text;
 }
 
-Result<JobKey> key_of(const CookJob& job, const DigestOf& digest_of) {
-  Result<std::vector<JobFile>> listed = list_job_files(job);
+Result<JobKey> key_of(const CookJob& job, const DigestOf& digest_of, const ListFiles& list_files) {
+  Result<std::vector<JobFile>> listed = list_job_files(job, list_files);
   if (!listed) return listed.error();
   JobKey key;
   for (JobFile& file : *listed) {

@@ -34,9 +34,11 @@ struct JobKey {
 ///
 /// Precondition: job.options is what a command line makes of its options: `costs`, `known_edges`,
 /// `keep_all` and `face_order` have their defaults. Reads every file once. Errors: those of
-/// list_job_files and `digest_of`, by which files are digested.
+/// list_job_files and `digest_of`, by which files are digested. `list_files`: as for
+/// list_job_files.
 using DigestOf = std::function<Result<Digest>(const std::filesystem::path& file)>;
-Result<JobKey> key_of(const CookJob& job, const DigestOf& digest_of = sha256_of_file);
+Result<JobKey> key_of(const CookJob& job, const DigestOf& digest_of = sha256_of_file,
+                      const ListFiles& list_files = list_source_files);
 
 /// The text that the key is the digest of, for people who look for the difference of two keys.
 [[nodiscard]] std::string key_text(const CookJob& job, const std::vector<KeyedFile>& files);

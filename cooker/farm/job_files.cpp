@@ -13,8 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status add_mesh(const fs::path& mesh, const ImportOptions& options, std::vector<JobFile>& files) {
-  Result<std::vector<fs::path>> read = list_source_files(mesh, options);
+Status add_mesh(const fs::path& mesh, const ImportOptions& options, const ListFiles& list_files,
+                std::vector<JobFile>& files) {
+  Result<std::vector<fs::path>> read = list_files(mesh, options);
   if (!read) return read.error();
   FileRole role = FileRole::kMesh;
   for (fs::path& file : *read) {
@@ -25,7 +26,7 @@ Status add_mesh(const fs::path& mesh, const ImportOptions& options, std::vector<
 
 }  // namespace
 
-Result<std::vector<JobFile>> list_job_files(const CookJob& job) {
+Result<std::vector<JobFile>> list_job_files(const CookJob& job, const ListFiles& list_files) {
   std::vector<JobFile> files;
   std::vector<fs::path> meshes = job.inputs;
   if (!job.profile.empty()) {
@@ -40,7 +41,9 @@ Result<std::vector<JobFile>> list_job_files(const CookJob& job) {
     meshes = std::move(*named);
   }
   for (const fs::path& mesh : meshes) {
-    if (Status status = add_mesh(mesh, job.options.import, files); !status) return status.error();
+    if (Status status = add_mesh(mesh, job.options.import, list_files, files); !status) {
+      return status.error();
+    }
   }
   if (!job.costs.empty()) files.push_back({FileRole::kCosts, job.costs});
   return files;

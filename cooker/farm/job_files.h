@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include <boxtree/error.h>
@@ -25,9 +26,14 @@ struct JobFile {
   std::filesystem::path path;
 };
 
+/// How the files of a mesh are listed: as list_source_files().
+using ListFiles = std::function<Result<std::vector<std::filesystem::path>>(
+    const std::filesystem::path& mesh, const ImportOptions& options)>;
+
 /// All files that cook_job reads, in the order of Summary::files_read. What a mesh refers to is
-/// found as import finds it, and looked for anew by each call. A mesh that is bytes has no file and
+/// found as import finds it, by `list_files`. A mesh that is bytes has no file and
 /// is not listed. Errors: those of read_profile, scene_files and list_source_files.
-Result<std::vector<JobFile>> list_job_files(const CookJob& job);
+Result<std::vector<JobFile>> list_job_files(const CookJob& job,
+                                            const ListFiles& list_files = list_source_files);
 
 }  // namespace boxtree::cooker

@@ -4,6 +4,7 @@
 #include "cooker/farm/journal.h"
 
 #include <cerrno>
+#include <cstdint>
 #include <fcntl.h>
 #include <span>
 #include <string_view>
@@ -31,26 +32,6 @@ std::optional<Journal::Entry> entry_of(const Json& line) {
   const Json* const bytes = line.find("bytes");
   if (!key || !output || bytes == nullptr || !bytes->is_number_unsigned()) return std::nullopt;
   return Journal::Entry{*key, *output, bytes->get<std::uint64_t>()};
-}
-
-// The five numbers of a state, in the order of its members.
-Json to_json(const FileState& state) {
-  Json numbers = Json::array();
-  for (const std::uint64_t number : state.numbers) numbers.push_back(number);
-  return numbers;
-}
-
-std::optional<FileState> state_in(const Json& line) {
-  const Json* const numbers = line.find("state");
-  FileState state;
-  if (numbers == nullptr || !numbers->is_array() || numbers->size() != state.numbers.size())
-    return std::nullopt;
-  std::size_t i = 0;
-  for (const Json& number : *numbers) {
-    if (!number.is_number_unsigned()) return std::nullopt;
-    state.numbers[i++] = number.get<std::uint64_t>();
-  }
-  return state;
 }
 
 }  // namespace
@@ -81,6 +62,7 @@ Journal::Journal(Journal&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       entries_(std::move(other.entries_)),
       files_(std::move(other.files_)),
+      lists_(std::move(other.lists_)),
       mutex_(std::move(other.mutex_)) {}
 
 Journal::~Journal() {
@@ -96,6 +78,12 @@ void Journal::read(std::string_view text) {
     const std::optional<FileState> state = state_in(line.value);
     const std::optional<Digest> digest = cooker::digest_of(text_at(line.value, "sha256"));
     if (state && digest) files_[text_at(line.value, "file")] = {*state, *digest};
+    if (line.value.contains("reads")) {
+      if (auto list = file_list_in(line.value)) {
+        std::string name = percent_encoded(list->opened.front().first.string());
+        lists_[std::move(name)] = std::move(*list);
+      }
+    }
   }
 }
 
@@ -124,6 +112,31 @@ Result<Digest> Journal::digest_of(const fs::path& file, bool* is_remembered) {
   if (Status status = add_line(line.dump()); !status) return status.error();
   files_[name] = {*before, *digest};
   return digest;
+}
+
+Result<std::vector<fs::path>> Journal::files_of(const fs::path& mesh, const FindFiles& find,
+                                                bool* is_remembered) {
+  const std::string name = percent_encoded(mesh.string());
+  std::optional<FileList> known;
+  {
+    const std::lock_guard lock(*mutex_);
+    if (const auto found = lists_.find(name); found != lists_.end()) known = found->second;
+  }
+  if (known && known->is_current()) {
+    if (is_remembered != nullptr) *is_remembered = true;
+    return std::move(known->files);
+  }
+  const std::int64_t began = now_nanoseconds();
+  Result<SourceFileList> found = find();
+  if (!found) return found.error();
+  if (std::optional<FileList> list = file_list(mesh, *found, began)) {
+    Json line = {{"file", name}};
+    line.update(to_json(*list));
+    const std::lock_guard lock(*mutex_);
+    if (Status status = add_line(line.dump()); !status) return status.error();
+    lists_[name] = std::move(*list);
+  }
+  return std::move(found->files);
 }
 
 std::optional<Journal::Entry> Journal::find(const fs::path& output, const Digest& key,

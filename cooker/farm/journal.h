@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -11,19 +12,22 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <boxtree/error.h>
 
+#include "cooker/farm/file_list.h"
 #include "cooker/farm/file_state.h"
 #include "cooker/farm/sha256.h"
 
 namespace boxtree::cooker {
 
 /// A file of JSON lines, one added whenever an output is complete: {"output", "key", "sha256",
-/// "bytes"}, and one whenever a file was digested: {"file", "state", "sha256"}. Of several lines of
-/// an output or a file the last one counts. A line that is cut short or damaged
-/// counts as none, so that its job is cooked again: a journal can only cost time. One process at a
-/// time has it: a lock of the file (flock) says so. Safe for several threads.
+/// "bytes"}, one whenever a file was digested: {"file", "state", "sha256"}, and one whenever the
+/// files were found that a mesh refers to: {"file", "reads", "opened", "absent", "seal"}. Of
+/// several lines of an output or a file the last one of a kind counts. A line that is cut short or
+/// damaged counts as none, so that its job is cooked again: a journal can only cost time. One
+/// process at a time has it: a lock of the file (flock) says so. Safe for several threads.
 class Journal {
  public:
   struct Entry {
@@ -46,6 +50,13 @@ class Journal {
   /// see FileState. Then sets `is_remembered`. Errors: those of sha256_of_file; kWriteFailed.
   [[nodiscard]] Result<Digest> digest_of(const std::filesystem::path& file,
                                          bool* is_remembered = nullptr);
+
+  /// The files that `find` finds of a mesh, without it if those of an earlier call, of this run or
+  /// another, are still right (FileList::is_current). Then sets `is_remembered`. Errors: those of
+  /// `find`; kWriteFailed.
+  using FindFiles = std::function<Result<SourceFileList>()>;
+  [[nodiscard]] Result<std::vector<std::filesystem::path>> files_of(
+      const std::filesystem::path& mesh, const FindFiles& find, bool* is_remembered = nullptr);
 
   /// Whether `output` was finished with this key and is there with the bytes that were written
   /// then, by digest_of if `may_remember`, else by reading it. What was finished, or nothing.
@@ -71,7 +82,8 @@ class Journal {
   int descriptor_;  // -1 after a move
   std::map<std::string, Entry> entries_;
   std::map<std::string, KnownFile> files_;
-  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // of the three above
+  std::map<std::string, FileList> lists_;
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // of those above
 };
 
 }  // namespace boxtree::cooker

@@ -43,6 +43,12 @@ Result<Digest> Journal::digest_of(const std::filesystem::path& file, bool* /*is_
   return sha256_of_file(file);
 }
 
+Result<std::vector<std::filesystem::path>> Journal::files_of(const std::filesystem::path& /*mesh*/,
+                                                             const FindFiles& /*find*/,
+                                                             bool* /*is_remembered*/) {
+  return unsupported("manifests");
+}
+
 std::optional<Journal::Entry> Journal::find(const std::filesystem::path& /*output*/,
                                             const Digest& /*key*/, bool /*may_remember*/) {
   return std::nullopt;

@@ -292,8 +292,7 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
   return {};
 }
 
-Result<std::vector<std::filesystem::path>> list_assimp_files(const SourceFile& source,
-                                                             const ImportOptions& options) {
+Result<SourceFileList> list_assimp_files(const SourceFile& source, const ImportOptions& options) {
   if (options.try_first) {
     const Status tried = try_reading(source);
     if (!tried.ok()) return in_file(source.title(), tried.error());
@@ -301,7 +300,10 @@ Result<std::vector<std::filesystem::path>> list_assimp_files(const SourceFile& s
   SourceUse use;
   const auto scene = read_scene(source, FaceOrder::kOfFile, use);
   if (!scene.ok()) return in_file(source.title(), scene.error());
-  return std::move(use.files);
+  const bool is_all = std::all_of(use.present.begin(), use.present.end(), [&](const auto& name) {
+    return std::find(use.named.begin(), use.named.end(), name) != use.named.end();
+  });
+  return SourceFileList{std::move(use.files), std::move(use.named), std::move(use.absent), is_all};
 }
 
 std::vector<std::string> assimp_endings() {

@@ -21,8 +21,7 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
 
 /// The files that import_with_assimp reads of `source`, in order of first use. Only reading tells
 /// them, so this costs as much. Errors: those of it.
-Result<std::vector<std::filesystem::path>> list_assimp_files(const SourceFile& source,
-                                                             const ImportOptions& options);
+Result<SourceFileList> list_assimp_files(const SourceFile& source, const ImportOptions& options);
 
 /// Endings of the names of files that assimp reads, in lower case.
 [[nodiscard]] std::vector<std::string> assimp_endings();

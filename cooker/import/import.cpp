@@ -207,16 +207,28 @@ Result<ImportedFile> import_file(const fs::path& path, const ImportOptions& opti
 
 Result<std::vector<fs::path>> list_source_files(const fs::path& path,
                                                 const ImportOptions& options) {
+  Result<SourceFileList> found = find_source_files(path, options);
+  if (!found) return found.error();
+  return std::move(found->files);
+}
+
+Result<SourceFileList> find_source_files(const fs::path& path, const ImportOptions& options) {
   const SourceFile source(path, options.bytes);
   try {
     if (Status status = check_source_file(source); !status.ok()) return status.error();
     if (!has_mesh_ending(source.path())) return explained(source, Error{Errc::kImportFailed, {}});
     if (has_extension(source.path(), "obj")) return list_obj_files(source);
     if (has_node_graph(source.path())) return list_assimp_files(source, options);
-    return source.bytes() ? std::vector<fs::path>() : std::vector{tidied(source.path())};
+    SourceFileList found;
+    if (!source.bytes()) found.files = {tidied(source.path())};
+    return found;
   } catch (...) {
     return in_file(source.title(), error_of_exception());
   }
+}
+
+bool may_refer_to_files(const fs::path& path) {
+  return has_extension(path, "obj") || has_node_graph(path);
 }
 
 bool has_node_graph(const fs::path& path) {

@@ -168,6 +168,20 @@ Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOpti
 Result<std::vector<std::filesystem::path>> list_source_files(const std::filesystem::path& path,
                                                              const ImportOptions& options = {});
 
+/// The same, and what else decides which files these are: while all named ones keep their bytes and
+/// no absent one comes, the list stays. Depends on no option.
+struct SourceFileList {
+  std::vector<std::filesystem::path> files;   // as list_source_files() has them
+  std::vector<std::filesystem::path> named;   // the names by which they were opened
+  std::vector<std::filesystem::path> absent;  // looked for, and no files that can be read
+  bool is_all = true;                         // false: more was looked for, and is there
+};
+Result<SourceFileList> find_source_files(const std::filesystem::path& path,
+                                         const ImportOptions& options = {});
+
+/// Whether a file of such a name may refer to others: only reading tells.
+[[nodiscard]] bool may_refer_to_files(const std::filesystem::path& path);
+
 /// Whether files of such a name have a node graph, as all have that assimp reads: then import_mesh
 /// flattens them.
 [[nodiscard]] bool has_node_graph(const std::filesystem::path& path);

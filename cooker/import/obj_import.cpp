@@ -269,29 +269,33 @@ FaceFault ObjReader<T>::fault_of(std::string_view word, std::size_t corner) cons
 
 // Adds the libraries that can be read to the files read and the others to those that are missing,
 // without duplicates.
+// `looked_for`: gets the names that were tried, unless it is null.
 void find_libraries(const SourceFile& source, const std::vector<std::string>& names,
-                    ImportReport& report) {
-  const auto path_of = [&](std::string_view name) {
-    return tidied(source.path().parent_path() / named_path(name));
+                    ImportReport& report, SourceFileList* looked_for = nullptr) {
+  const auto name_of = [&](std::string_view name) {
+    return source.path().parent_path() / named_path(name);
   };
   const auto add_to = [](std::vector<fs::path>& files, const fs::path& library) {
     if (std::find(files.begin(), files.end(), library) == files.end()) files.push_back(library);
   };
   const auto add = [&](std::string_view name) {
     if (source.bytes()) return false;  // beside no file
-    const fs::path library = path_of(name);
+    const fs::path library = tidied(name_of(name));
     std::error_code ignored;
     const bool is_file = fs::is_regular_file(status_of(library, ignored));
-    if (!is_file || !SourceStream::open(library).ok()) return false;
-    add_to(report.files_read, library);
-    return true;
+    const bool is_found = is_file && SourceStream::open(library).ok();
+    if (looked_for != nullptr) {
+      (is_found ? looked_for->named : looked_for->absent).push_back(name_of(name));
+    }
+    if (is_found) add_to(report.files_read, library);
+    return is_found;
   };
   Tokens words;
   for (const std::string& name : names) {
     if (add(name)) continue;
     split_tokens(name, words);
     for (const std::string_view word : words) {
-      if (!add(word)) add_to(report.files_missing, path_of(word));
+      if (!add(word)) add_to(report.files_missing, tidied(name_of(word)));
     }
   }
 }
@@ -330,14 +334,17 @@ Status import_obj(const SourceFile& source, const ImportOptions& options, Import
   return {};
 }
 
-Result<std::vector<fs::path>> list_obj_files(const SourceFile& source) {
+Result<SourceFileList> list_obj_files(const SourceFile& source) {
   const Result<std::string> bytes = source.read();
   if (!bytes.ok()) return bytes.error();
   const Result<std::string_view> text = text_of(*bytes);
   if (!text.ok()) return in_file(source.title(), text.error());
-  ImportReport report;
-  if (!source.bytes()) report.files_read = {tidied(source.path())};
-  if (text->find(kLibrary) == std::string_view::npos) return std::move(report.files_read);
+  SourceFileList found;
+  if (!source.bytes()) {
+    found.files = {tidied(source.path())};
+    found.named = {source.path()};
+  }
+  if (text->find(kLibrary) == std::string_view::npos) return found;
   std::vector<std::string> libraries;
   std::string joined;
   ObjStatement statement{};
@@ -346,8 +353,11 @@ Result<std::vector<fs::path>> list_obj_files(const SourceFile& source) {
     const std::string_view name = library_of(joined_text(statement, joined));
     if (!name.empty()) libraries.emplace_back(name);
   }
-  find_libraries(source, libraries, report);
-  return std::move(report.files_read);
+  ImportReport report;
+  report.files_read = std::move(found.files);
+  find_libraries(source, libraries, report, &found);
+  found.files = std::move(report.files_read);
+  return found;
 }
 
 }  // namespace boxtree::cooker

@@ -22,6 +22,6 @@ Status import_obj(const SourceFile& source, const ImportOptions& options, Import
 
 /// The file and the material libraries that import_obj would find. Reads the text, and no vertex of
 /// it. Errors: as for a text that cannot be read.
-Result<std::vector<std::filesystem::path>> list_obj_files(const SourceFile& source);
+Result<SourceFileList> list_obj_files(const SourceFile& source);
 
 }  // namespace boxtree::cooker

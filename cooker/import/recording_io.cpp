@@ -24,7 +24,9 @@ bool RecordingIo::Exists(const char* path) const {
   if (source_.bytes()) return is_source(path);
   std::error_code error;
   const fs::path file = found(path);
-  return fs::is_regular_file(file, error) && DefaultIOSystem::Exists(file.c_str());
+  const bool exists = fs::is_regular_file(file, error) && DefaultIOSystem::Exists(file.c_str());
+  (exists ? use_.present : use_.absent).push_back(file);
+  return exists;
 }
 
 fs::path RecordingIo::found(const char* path) const {
@@ -34,7 +36,10 @@ fs::path RecordingIo::found(const char* path) const {
   const std::string folder = source_.path().parent_path().string();
   const std::size_t kept = name.substr(0, folder.size()) == folder ? folder.size() : 0;
   fs::path file = std::string(name.substr(0, kept)) + percent_decoded(name.substr(kept));
-  return fs::is_regular_file(file, error) ? file : fs::path(path);
+  use_.absent.emplace_back(path);
+  if (fs::is_regular_file(file, error)) return file;
+  use_.absent.push_back(std::move(file));
+  return path;
 }
 
 void RecordingIo::note_failure(const fs::path& file) {
@@ -74,12 +79,16 @@ Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
     stream = adds_line_end ? open_with_line_end() : DefaultIOSystem::Open(file.c_str(), mode);
   }
   if (stream == nullptr) {
+    use_.absent.push_back(file);
     note_failure(file);
     return nullptr;
   }
   fs::path normal = tidied(file);
   if (std::find(use_.files.begin(), use_.files.end(), normal) == use_.files.end()) {
     use_.files.push_back(std::move(normal));
+  }
+  if (std::find(use_.named.begin(), use_.named.end(), file) == use_.named.end()) {
+    use_.named.push_back(file);
   }
   return stream;
 }

@@ -18,7 +18,10 @@ namespace boxtree::cooker {
 
 /// What a reader opened.
 struct SourceUse {
-  std::vector<std::filesystem::path> files;  // by their names
+  std::vector<std::filesystem::path> files;    // by their names
+  std::vector<std::filesystem::path> named;    // the same, as the reader named them
+  std::vector<std::filesystem::path> present;  // looked for and there, whether opened or not
+  std::vector<std::filesystem::path> absent;   // looked for, and not there or not opened
   /// The first file that could not be, because the source is bytes, beside no file; empty if none.
   std::filesystem::path inaccessible;
   /// Why the first file that could not be opened beside a named source could not be.

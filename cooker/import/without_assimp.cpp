@@ -36,8 +36,8 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& /*optio
   return unsupported(source);
 }
 
-Result<std::vector<std::filesystem::path>> list_assimp_files(const SourceFile& source,
-                                                             const ImportOptions& /*options*/) {
+Result<SourceFileList> list_assimp_files(const SourceFile& source,
+                                         const ImportOptions& /*options*/) {
   return unsupported(source);
 }
 

@@ -374,6 +374,51 @@ expect 0 "$boxtree" cook --manifest levels.jsonl --jobs 8 --quiet
 expect 0 "$boxtree" cook in/level7.gltf -o level_single.bxt --quiet
 cmp level7.bxt level_single.bxt
 
+# Found by an audit: names of what a mesh refers to were looked for in it each time. They are remembered, and each change of what
+# decides them is seen.
+mkdir named
+printf 'mtllib first.mtl later.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >named/a.obj
+echo 'newmtl first' >named/first.mtl
+python3 - <<'END'
+import json, struct
+def write(name, buffer):
+    accessor = {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]}
+    json.dump({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+               "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "accessors": [accessor],
+               "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": buffer, "byteLength": 36}]}, open(name, "w"))
+write("named/b.gltf", "one.bin")
+write("named/other.gltf", "two.bin")
+for name, last in ("named/one.bin", 0.5), ("named/two.bin", 1.0), ("named/third.bin", 0.25):
+    open(name, "wb").write(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, last))
+END
+for mesh in a.obj b.gltf; do echo "{\"inputs\":[\"named/$mesh\"],\"output\":\"named/$mesh.bxt\"}"; done >named.jsonl
+sleep 2.1
+cook_named() { # OUTPUT...: those that are cooked, and not there already; the others have the bytes of single cooks
+  expect 0 "$boxtree" cook --manifest named.jsonl --json
+  same "$(jq -r 'select(.there | not) | .output' out | sort | xargs)" "$*"
+  for mesh in a.obj b.gltf; do
+    "$boxtree" cook "named/$mesh" -o single.bxt --quiet 2>/dev/null
+    cmp single.bxt "named/$mesh.bxt"
+  done
+}
+cook_named named/a.obj.bxt named/b.gltf.bxt
+same "$(grep -c '"reads"' named.jsonl.done)" 2
+sleep 2.1
+cook_named
+cook_named
+same "$(grep -c '"reads"' named.jsonl.done)" 2
+echo 'newmtl later' >named/later.mtl # was missing
+cook_named named/a.obj.bxt
+rm named/first.mtl
+cook_named named/a.obj.bxt
+touch -r named/one.bin time
+cat named/third.bin >named/one.bin
+touch -r time named/one.bin
+cook_named named/b.gltf.bxt
+cp named/other.gltf named/b.gltf # refers to another
+cook_named named/b.gltf.bxt
+cook_named
+
 # make and ninja with a cache, by the rules of docs/FARM.md: what is away is taken from it, with the depfile of a cook, and what an
 # input refers to still cooks anew. GNU parallel, where it is installed.
 mkdir built

@@ -2,9 +2,11 @@
 // A journal can cost time and never a wrong output: each way in which it, or an output, is damaged.
 #include "cooker/farm/journal.h"
 
+#include <chrono>
 #include <fstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -185,6 +187,115 @@ TEST(Journal, AnyOtherStateIsReadAnew) {
   EXPECT_EQ(require(journal.digest_of(file)), sha256_of("bytez"));
   fs::remove(file);
   EXPECT_EQ(journal.digest_of(file).code(), Errc::kFileNotFound);
+}
+
+// A mesh and what it refers to, found by readings that are counted.
+class FilesOf : public ::testing::Test {
+ protected:
+  FilesOf() {
+    folder_.write("m.obj", "mtllib a.mtl\nmtllib b.mtl\nmtllib sub/../c.mtl\nv 0 0 0\n");
+    folder_.write("a.mtl", "newmtl a\n");
+    fs::create_directory(folder_.path() / "sub");
+    folder_.write("c.mtl", "newmtl c\n");
+    settle();
+  }
+  // What has just been written is not remembered.
+  static void settle() { std::this_thread::sleep_for(std::chrono::milliseconds(2100)); }
+  std::vector<std::string> names(const std::vector<fs::path>& files) const {
+    std::vector<std::string> names;
+    for (const fs::path& file : files) names.push_back(file.filename().string());
+    return names;
+  }
+  // The names, and whether they were found anew.
+  std::pair<std::vector<std::string>, bool> list() {
+    Journal journal = require(Journal::open(folder_.path() / "j"));
+    const fs::path mesh = folder_.path() / "m.obj";
+    bool is_read = false, is_remembered = false;
+    const auto files = require(journal.files_of(
+        mesh,
+        [&] {
+          is_read = true;
+          return find_source_files(mesh);
+        },
+        &is_remembered));
+    EXPECT_NE(is_read, is_remembered);
+    return {names(files), is_read};
+  }
+  using Names = std::vector<std::string>;
+
+  test::TempFolder folder_;
+};
+
+// Found by an audit: a run with nothing to do read each OBJ, and imported each glTF, for their
+// names alone.
+TEST_F(FilesOf, AreRememberedWhileAllThatDecidesThemIsTheSame) {
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "a.mtl", "c.mtl"}), true));
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "a.mtl", "c.mtl"}), false));
+  // What was missing comes.
+  folder_.write("b.mtl", "newmtl b\n");
+  settle();
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "a.mtl", "b.mtl", "c.mtl"}), true));
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "a.mtl", "b.mtl", "c.mtl"}), false));
+  // What was there goes.
+  fs::remove(folder_.path() / "a.mtl");
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "b.mtl", "c.mtl"}), true));
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "b.mtl", "c.mtl"}), false));
+  // The mesh changes.
+  folder_.write("m.obj", "mtllib c.mtl\nv 0 0 0\n");
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "c.mtl"}), true));
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "c.mtl"}), true));  // not settled
+  settle();
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "c.mtl"}), true));
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "c.mtl"}), false));
+}
+
+TEST_F(FilesOf, AreFoundAnewWhereNamesLeadElsewhere) {
+  EXPECT_TRUE(list().second);
+  EXPECT_FALSE(list().second);
+  // "sub/.." is another folder behind a link.
+  fs::create_directories(folder_.path() / "far/away");
+  folder_.write("far/c.mtl", "newmtl other\n");
+  fs::remove(folder_.path() / "sub");
+  fs::create_directory_symlink("far/away", folder_.path() / "sub");
+  EXPECT_EQ(list(), std::pair(Names({"m.obj", "a.mtl", "c.mtl"}), true));
+}
+
+TEST_F(FilesOf, AreFoundAnewIfALineIsDamaged) {
+  const auto found = list().first;
+  const std::string text = test::read_text(folder_.path() / "j");
+  EXPECT_FALSE(list().second);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    std::string damaged = text;
+    damaged[i] = static_cast<char>(damaged[i] ^ 1);
+    folder_.write("j", damaged);
+    EXPECT_EQ(list().first, found) << i;
+  }
+  for (const char* other : {"\"a.mtl", "b.mtl", "\"seal\":\""}) {
+    std::string damaged = text;
+    const std::size_t at = damaged.rfind(std::string(other).substr(other[0] == '"' ? 1 : 0, 5));
+    ASSERT_NE(at, std::string::npos);
+    damaged[at] = static_cast<char>(damaged[at] ^ 1);
+    folder_.write("j", damaged);
+    EXPECT_TRUE(list().second) << other;
+  }
+}
+
+TEST_F(FilesOf, AreFoundAnewIfNotAllIsKnownThatDecides) {
+  Journal journal = require(Journal::open(folder_.path() / "j"));
+  const fs::path mesh = folder_.path() / "m.obj";
+  std::size_t readings = 0;
+  const auto find = [&]() -> Result<SourceFileList> {
+    ++readings;
+    SourceFileList found = require(find_source_files(mesh));
+    found.is_all = false;
+    return found;
+  };
+  EXPECT_TRUE(journal.files_of(mesh, find));
+  EXPECT_TRUE(journal.files_of(mesh, find));
+  EXPECT_EQ(readings, 2u);
+  EXPECT_EQ(
+      journal.files_of(mesh, [] { return Result<SourceFileList>(Errc::kImportFailed); }).code(),
+      Errc::kImportFailed);
 }
 
 // Another change within the step of the file system's times would not show.
