@@ -2,6 +2,7 @@
 // Whether a file is a blob is known from its header alone.
 #include "cooker/cli/open_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <vector>
 
@@ -79,6 +80,12 @@ Result<std::uint32_t> find_tree(const File& file, const WhichTree& wanted) {
   }
   constexpr std::size_t kMostListed = 8;
   std::string meant = suggestion(which, names);
+  if (meant.empty()) {  // the last part of a path
+    const auto below = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+      return name.ends_with("/" + which);
+    });
+    if (below != names.end()) meant = "; did you mean '" + *below + "'?";
+  }
   if (meant.empty() && names.size() <= kMostListed) meant = "; expected " + listed(names);
   return Error{Errc::kTreeIndex, fmt::format("no tree is called \"{}\"{}", which, meant)};
 }

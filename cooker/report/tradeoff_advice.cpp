@@ -65,6 +65,14 @@ bool is_cooks_grid(const MeshTradeoff& mesh, const TradePoint& point) {
   return !mesh.is_f64 && point.grid_bits == GridChoice().bits;
 }
 
+}  // namespace
+
+const char* contacts_name(const MeshTradeoff& mesh) {
+  return mesh.timed ? "all contacts" : "shallow contacts";
+}
+
+namespace {
+
 PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::string& role,
                     double slowdown) {
   const TradePoint& point = mesh.points[place];
@@ -77,8 +85,8 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
   const auto time = [&](std::size_t kind) {
     return time_in_words(mean_time_of(mesh, point, kind));
   };
-  std::string times = fmt::format("a ray takes {}, a box {}, a closest point {}, all contacts {}",
-                                  time(0), time(1), time(2), time(3));
+  std::string times = fmt::format("a ray takes {}, a box {}, a closest point {}, {} {}", time(0),
+                                  time(1), time(2), contacts_name(mesh), time(3));
   if (mesh.timed) {
     times =
         fmt::format("In the mean {} (one in a hundred takes longer than {}, {}, {} and {}).", times,

@@ -31,6 +31,9 @@ struct Advice {
 [[nodiscard]] double mean_time_of(const MeshTradeoff& mesh, const TradePoint& point,
                                   std::size_t kind);
 
+/// What the last kind of queries is called: what is timed goes deeper than what is counted.
+[[nodiscard]] const char* contacts_name(const MeshTradeoff& mesh);
+
 /// The time of each point relative to that of wide8 with arrays: the mean over the kinds of queries
 /// of the ratio of both mean times, as slowdowns() has it. 1 where either has no time.
 [[nodiscard]] std::vector<double> slowdowns_of(const MeshTradeoff& mesh);

@@ -219,7 +219,7 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   const auto advice = advise(mesh);
   if (!advice) return section;
   PageTable table{{"choice", "encoding", "bytes / triangle", "without face ids", "of source",
-                   "surface moved", "ray", "box", "point", "all contacts", "slowdown"},
+                   "surface moved", "ray", "box", "point", contacts_name(mesh), "slowdown"},
                   {},
                   2};
   const std::vector<double> slower = slowdowns_of(mesh);

@@ -97,6 +97,9 @@ grep -q 'usage: pack: two files are named "tree", of a/tree.bxt and b/rock.bxt; 
 [ ! -e names.bxt ]
 expect 0 "$boxtree" pack a/rock.bxt ./b/rock.bxt -o names.bxt --names path
 same "$("$boxtree" info names.bxt --json | jq -r '.trees[].name' | xargs)" 'a/rock b/rock'
+# Found by a newcomer: the last part of a path alone was not told the rest.
+expect 1 "$boxtree" query names.bxt --tree rock ray --origin 0,0,9 --direction 0,0,-1
+grep -q "did you mean 'a/rock'?" err
 expect 0 "$boxtree" split names.bxt -o by_path
 cmp by_path/b/rock.bxt b/rock.bxt
 expect 1 "$boxtree" pack a/rock.bxt a/rock.bxt -o twice.bxt
