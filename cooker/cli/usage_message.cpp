@@ -221,9 +221,14 @@ std::string unexpected_word(const Command& command, const std::string& word) {
 std::string fault(const CLI::App& app, const Command& command, const CLI::Error& error) {
   const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-  if (!is_missing && !is_extra) return mismatch(error.what());
   std::vector<std::string> rest = app.remaining(true);
   std::erase(rest, kEndOfOptions);
+  const auto option = std::find_if(rest.begin(), rest.end(), is_option);
+  // The word behind it may have been taken for what excludes the rest.
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr && option != rest.end()) {
+    return unknown_option(command, without_value(*option));
+  }
+  if (!is_missing && !is_extra) return mismatch(error.what());
   const std::string behind_end =
       fault_behind_end(command, command_of(app).behind_end(), rest,
                        is_missing ? missing_in_full(command, error.what()) : std::string());
@@ -232,7 +237,6 @@ std::string fault(const CLI::App& app, const Command& command, const CLI::Error&
     const std::string word = misspelt_command(command, rest);
     if (!word.empty()) return unknown_command(command, word);
   }
-  const auto option = std::find_if(rest.begin(), rest.end(), is_option);
   if (option != rest.end()) return unknown_option(command, without_value(*option));
   if (is_extra) return unexpected_word(command, rest.front());
   return app.get_subcommands().empty() ? "a command is required" : missing(command, rest, error);

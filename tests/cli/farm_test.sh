@@ -185,6 +185,11 @@ cmp first.jsonl kept.jsonl
 echo "{\"inputs\":[\"in/m1.obj\"],\"output\":\"cooked/$(printf 'x%.0s' $(seq 300)).bxt\"}" >long.jsonl
 expect 3 "$boxtree" cook --manifest long.jsonl --json
 same "$(jq -c '[.error.name, .error.status, .error.may_pass]' out)" '["write_failed",2,false]'
+# Found by a newcomer: the word behind an unknown option was told to be a mesh, which excludes --manifest.
+expect 1 "$boxtree" key --manifest bad.jsonl --shard 0/3
+same "$(head -1 err)" "boxtree: usage: key: '--shard' is no option of key, but of cook"
+expect 1 "$boxtree" cook --manifest bad.jsonl --cahce x
+same "$(head -1 err)" "boxtree: usage: cook: '--cahce' is no option; did you mean '--cache'?"
 # Found by a newcomer: names of something else are retried for ever.
 mkdir -p folder
 echo notes >notes.txt
