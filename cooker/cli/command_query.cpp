@@ -242,6 +242,28 @@ class StillSceneWarning {
   bool is_told_ = false;
 };
 
+// With the names of those that there are.
+Error no_scene_called(const File& pack, const std::string& name) {
+  std::vector<std::string> names;
+  for (std::uint32_t i = 0; i < pack.tree_count(); ++i) {
+    const Result<Member> member = pack.member(i);
+    if (!member || !member->file.has_scene()) continue;
+    const std::string tree(pack.tree_name(i));
+    const std::size_t end = tree.rfind('/');
+    if (member->file.tree_count() > 1 && end != std::string::npos)
+      names.push_back(tree.substr(0, end));
+    names.push_back(tree);
+  }
+  std::string meant = suggestion(name, names);
+  const auto longer = std::find_if(names.begin(), names.end(), [&](const std::string& each) {
+    return each.ends_with("/" + name);
+  });
+  if (meant.empty() && longer != names.end()) meant = "; did you mean '" + *longer + "'?";
+  if (names.empty()) meant = "; the file holds no scene";
+  return {Errc::kTreeIndex,
+          fmt::format("no scene, and no tree of one, is called \"{}\"{}", name, meant)};
+}
+
 // The file that `tree` came in, whose bytes are those of `pack`; one with a scene. A file of
 // several trees has a name, too, which is what comes before theirs. Errors: those of find_tree and
 // File::member, and kNoScene.
@@ -250,7 +272,7 @@ Result<File> scene_around(const File& pack, const std::string& tree) {
   for (std::uint32_t i = 0; !index && i < pack.tree_count(); ++i) {
     if (pack.tree_name(i).starts_with(tree + "/")) index = i;
   }
-  if (!index) return index.error();
+  if (!index) return no_scene_called(pack, tree);
   Result<Member> member = pack.member(*index);
   if (!member) return member.error();
   if (!member->file.has_scene()) {
@@ -536,7 +558,7 @@ void add_query_command(Command& program, int& status) {
       .add_option("--scene", arguments->scene,
                   "Of a pack: the scene with this tree, by name or number, or the "
                   "scene of a file of several trees")
-      ->type_name("TREE")
+      ->type_name("NAME")
       ->excludes(tree);
   command
       .add_option(

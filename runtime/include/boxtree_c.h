@@ -545,7 +545,7 @@ typedef struct bxt_ray_hit {
   uint32_t struct_size;  ///< sizeof(bxt_ray_hit).
   bool is_hit;           ///< Whether there is a hit; else the rest says: infinitely far, no face.
   double t;              ///< In units of the ray's direction.
-  bxt_face face;         ///< The face that was hit.
+  bxt_face face;         ///< The face that was hit, in a scene with its instance.
   uint32_t triangle;     ///< 0, or 1 for the second half of a quad.
   double u, v;           ///< Weights of the triangle's corners 1 and 2; corner 0 has 1 - u - v.
   bxt_vec3 point;        ///< Where, on the face.

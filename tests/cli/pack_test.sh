@@ -83,8 +83,13 @@ echo '{"kind":"ray","origin":[0.5,0.5,9],"direction":[0,0,-1]}' >batch
 same "$("$boxtree" query all.bxt --scene "$part" --batch batch | jq .answers)" "$("$boxtree" query a/level.bxt --batch batch | jq .answers)"
 expect 1 "$boxtree" query all.bxt --scene rock "${ray[@]}"
 same "$(cat err)" 'boxtree: no_scene: all.bxt: --scene rock: this tree was cooked without --scene; --tree rock queries it'
-expect 1 "$boxtree" query all.bxt --scene rok "${ray[@]}"
-grep -q "did you mean 'rock'" err
+expect 1 "$boxtree" query all.bxt --scene levl "${ray[@]}"
+same "$(cat err)" "boxtree: tree_index: all.bxt: no scene, and no tree of one, is called \"levl\"; did you mean 'level'?"
+"$boxtree" pack a/level.bxt a/rock.bxt --names path -o paths.bxt -q
+expect 1 "$boxtree" query paths.bxt --scene level "${ray[@]}"
+grep -q "did you mean 'a/level'?" err
+expect 1 "$boxtree" query a/rock.bxt --scene level "${ray[@]}"
+grep -q 'is called "level"; the file holds no scene$' err
 expect 1 "$boxtree" query all.bxt --scene rock --tree rock "${ray[@]}"
 same "$(head -1 err)" 'boxtree: usage: query ray: --tree excludes --scene'
 expect 1 "$boxtree" query all.bxt --tree rok ray --origin 0,0,9 --direction 0,0,-1
