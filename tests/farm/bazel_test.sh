@@ -15,7 +15,11 @@ cleanup() {
   for checkout in "$work"/checkout*; do
     [ ! -d "$checkout" ] || (cd "$checkout" && bazel shutdown >/dev/null 2>&1) || true
   done
-  [ ! -f "$work/nginx.pid" ] || kill "$(cat "$work/nginx.pid")"
+  if [ -f "$work/nginx.pid" ]; then
+    kill "$(cat "$work/nginx.pid")"
+    # nginx removes it when it ends, which must not be while the folder is walked below.
+    for _ in $(seq 100); do [ -e "$work/nginx.pid" ] || break; sleep 0.1; done
+  fi
   [ $status = 0 ] || tail -n 20 "$work"/{build,nginx}.log >&2
   chmod -R u+w "$work"
   rm -rf "$work"
