@@ -254,12 +254,8 @@ Error no_scene_called(const File& pack, const std::string& name) {
       names.push_back(tree.substr(0, end));
     names.push_back(tree);
   }
-  std::string meant = suggestion(name, names);
-  const auto longer = std::find_if(names.begin(), names.end(), [&](const std::string& each) {
-    return each.ends_with("/" + name);
-  });
-  if (meant.empty() && longer != names.end()) meant = "; did you mean '" + *longer + "'?";
-  if (names.empty()) meant = "; the file holds no scene";
+  const std::string meant =
+      names.empty() ? "; the file holds no scene" : path_suggestion(name, names);
   return {Errc::kTreeIndex,
           fmt::format("no scene, and no tree of one, is called \"{}\"{}", name, meant)};
 }

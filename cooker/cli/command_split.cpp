@@ -41,18 +41,6 @@ struct Arguments {
   bool json = false;
 };
 
-// Of the first error, 0 if there is none.
-class ExitStatus {
- public:
-  void add(int status) {
-    if (status_ == 0) status_ = status;
-  }
-  [[nodiscard]] int value() const { return status_; }
-
- private:
-  int status_ = 0;
-};
-
 // A member that is to be written.
 struct Chosen {
   std::string name;
@@ -114,11 +102,15 @@ int run(const Arguments& arguments) {
         "cook each mesh to a file of its own, and pack these",
         name, counted(pack.tree_count(), "tree"), pack.tree_count() == 1 ? "was" : "were"));
   }
-  ExitStatus exit_status;
+  int first_status = 0;
+  const auto tell = [&](const Error& error) {
+    const int status = fail(error);
+    if (first_status == 0) first_status = status;
+  };
   for (const Error& finding : check_pack_index(pack)) {
     // Bytes between members are of none; whatever else is wrong says of no member where it is.
     if (finding.code != Errc::kPaddingNotZero) return fail(in_file(name, finding));
-    exit_status.add(fail(in_file(name, finding)));
+    tell(in_file(name, finding));
   }
   const Result<std::vector<Chosen>> chosen = choose_members(arguments, pack);
   if (!chosen) return fail(chosen.error());
@@ -138,8 +130,8 @@ int run(const Arguments& arguments) {
       step.clear();
       // Where one cannot be written, the others cannot either. Damage is of one alone.
       const bool is_damaged = status.code() != Errc::kWriteFailed;
-      exit_status.add(fail(is_damaged ? in_file(name, status.error()) : status.error()));
-      if (!is_damaged) return exit_status.value();
+      tell(is_damaged ? in_file(name, status.error()) : status.error());
+      if (!is_damaged) return first_status;
       continue;
     }
     ++written;
@@ -160,7 +152,7 @@ int run(const Arguments& arguments) {
     fmt::print("{}: {}, {} bytes\n", shown(arguments.folder.string()), counted(written, "file"),
                bytes);
   }
-  return exit_status.value();
+  return first_status;
 }
 
 }  // namespace

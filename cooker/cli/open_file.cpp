@@ -2,7 +2,6 @@
 // Whether a file is a blob is known from its header alone.
 #include "cooker/cli/open_file.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <vector>
 
@@ -78,15 +77,8 @@ Result<std::uint32_t> find_tree(const File& file, const WhichTree& wanted) {
                              "file; expected a number from 0 to {}",
                              which, file.tree_count() - 1)};
   }
-  constexpr std::size_t kMostListed = 8;
-  std::string meant = suggestion(which, names);
-  if (meant.empty()) {  // the last part of a path
-    const auto below = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-      return name.ends_with("/" + which);
-    });
-    if (below != names.end()) meant = "; did you mean '" + *below + "'?";
-  }
-  if (meant.empty() && names.size() <= kMostListed) meant = "; expected " + listed(names);
+  std::string meant = path_suggestion(which, names);
+  if (meant.empty()) meant = expected_if_few(names);
   return Error{Errc::kTreeIndex, fmt::format("no tree is called \"{}\"{}", which, meant)};
 }
 

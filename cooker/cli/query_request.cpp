@@ -48,7 +48,7 @@ Json listed_face(const Tree& tree, const FaceRef& face) {
 Error only_of_scenes(const std::string& what, const std::string& instead) {
   return {Errc::kNoScene,
           fmt::format("{} are those of a scene, and this is one tree; {}, or query a file of "
-                      "cook --scene, without --tree (of a pack, with --scene TREE)",
+                      "cook --scene, without --tree (of a pack, with --scene NAME)",
                       what, instead)};
 }
 

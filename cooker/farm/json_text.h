@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Texts of documents that may hold anything.
+// Texts, and states of files, of documents that may hold anything.
 #pragma once
 
 #include <cstddef>

@@ -81,11 +81,9 @@ std::string why_none(const SourceScene& scene, const Profile& profile,
                        profile.objects[objects[i]].name.value,
                        is_stated ? "as the instance states" : "an object that comes first");
   }
-  constexpr std::size_t kMostListed = 8;
   const std::vector<std::string> names = names_of(scene);
   const std::string meant = suggestion(globs.front().value, names);
-  const bool are_few = !names.empty() && names.size() <= kMostListed;
-  return meant.empty() && are_few ? "; expected " + listed(names) : meant;
+  return meant.empty() ? expected_if_few(names) : meant;
 }
 
 void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan& plan) {

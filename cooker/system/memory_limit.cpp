@@ -20,6 +20,10 @@ std::optional<std::uint64_t> limit_in(const fs::path& file) {
   return number_of<std::uint64_t>(word);
 }
 
+void keep_least(std::optional<std::uint64_t> limit, std::optional<std::uint64_t>& least) {
+  if (limit) least = std::min(least.value_or(*limit), *limit);
+}
+
 // Of a group and of all above it, up to `root`.
 std::optional<std::uint64_t> least_limit(const fs::path& root, std::string_view group,
                                          const char* file) {
@@ -27,14 +31,11 @@ std::optional<std::uint64_t> least_limit(const fs::path& root, std::string_view 
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) folder = root;
   std::optional<std::uint64_t> least;
-  while (true) {
-    if (const auto limit = limit_in(folder / file)) {
-      least = std::min(least.value_or(*limit), *limit);
-    }
-    if (folder == root || !folder.has_parent_path() || folder == folder.parent_path()) break;
+  while (true) {  // `root` is the beginning of its name
+    keep_least(limit_in(folder / file), least);
+    if (folder == root) return least;
     folder = folder.parent_path();
   }
-  return least;
 }
 
 }  // namespace
@@ -50,12 +51,10 @@ std::optional<std::uint64_t> memory_limit(std::string_view groups, const fs::pat
     if (first == std::string_view::npos || second == std::string_view::npos) continue;
     const std::string_view controllers = line.substr(first + 1, second - first - 1);
     const std::string_view group = line.substr(second + 1);
-    std::optional<std::uint64_t> limit;
-    if (controllers.empty()) limit = least_limit(root, group, "memory.max");
+    if (controllers.empty()) keep_least(least_limit(root, group, "memory.max"), least);
     if (controllers == "memory") {
-      limit = least_limit(root / "memory", group, "memory.limit_in_bytes");
+      keep_least(least_limit(root / "memory", group, "memory.limit_in_bytes"), least);
     }
-    if (limit) least = std::min(least.value_or(*limit), *limit);
   }
   return least;
 }

@@ -53,10 +53,32 @@ std::string joined(std::span<const std::string> words, std::string_view between)
   return text;
 }
 
+namespace {
+
+std::string did_you_mean(const std::string& name) {
+  return "; did you mean '" + name + "'?";
+}
+
+}  // namespace
+
 std::string suggestion(std::string_view name, std::span<const std::string> names) {
   const std::string nearest = nearest_name(name, names);
   const bool is_near = edit_distance(name, nearest) <= std::max<std::size_t>(name.size() / 3, 1);
-  return is_near && !nearest.empty() ? "; did you mean '" + nearest + "'?" : std::string();
+  return is_near && !nearest.empty() ? did_you_mean(nearest) : std::string();
+}
+
+std::string path_suggestion(std::string_view name, std::span<const std::string> names) {
+  std::string near = suggestion(name, names);
+  if (!near.empty()) return near;
+  const std::string end = "/" + std::string(name);
+  const auto longer = std::find_if(names.begin(), names.end(),
+                                   [&](const std::string& each) { return each.ends_with(end); });
+  return longer == names.end() ? std::string() : did_you_mean(*longer);
+}
+
+std::string expected_if_few(std::span<const std::string> names) {
+  constexpr std::size_t kMost = 8;
+  return names.empty() || names.size() > kMost ? std::string() : "; expected " + listed(names);
 }
 
 }  // namespace boxtree::cooker

@@ -29,4 +29,11 @@ namespace boxtree::cooker {
 /// would change.
 [[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> names);
 
+/// The same of names that may be paths: also with the first of which `name` is the last part.
+[[nodiscard]] std::string path_suggestion(std::string_view name,
+                                          std::span<const std::string> names);
+
+/// "; expected ray, box or point"; empty if there are none, or more than eight.
+[[nodiscard]] std::string expected_if_few(std::span<const std::string> names);
+
 }  // namespace boxtree::cooker

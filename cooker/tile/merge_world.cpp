@@ -139,22 +139,20 @@ class Merge {
   Status add_numbers(const fs::path& path, const File& file, std::uint32_t number) {
     const Result<Tree> tree = Tree::bind(file, number);
     if (!tree) return in_file(path, tree.error());
-    for (const bool is_checked : {false, true}) {
-      for (std::uint32_t first = 0; first < tree->face_count(); first += kLeafFaces) {
-        std::array<std::uint32_t, kLeafFaces> ids;
-        BoundTree::of(*tree).read_leaf_ids(first / kLeafFaces, ids);
-        for (const std::uint32_t id :
-             std::span(ids).first(std::min(tree->face_count() - first, kLeafFaces))) {
-          if (is_checked) {
-            numbers_.insert(id);
-          } else if (numbers_.contains(id)) {
-            return unfit(path, fmt::format("there is another face {} before this one; name each "
-                                           "tile of one world once",
-                                           id));
-          }
-        }
-      }
+    const std::uint32_t faces = tree->face_count();
+    std::vector<std::uint32_t> ids(align_up(faces, kLeafFaces));
+    for (std::uint32_t first = 0; first < faces; first += kLeafFaces) {
+      BoundTree::of(*tree).read_leaf_ids(first / kLeafFaces,
+                                         std::span(ids).subspan(first).first<kLeafFaces>());
     }
+    ids.resize(faces);
+    for (const std::uint32_t id : ids) {
+      if (!numbers_.contains(id)) continue;
+      return unfit(path, fmt::format("there is another face {} before this one; name each tile of "
+                                     "one world once",
+                                     id));
+    }
+    for (const std::uint32_t id : ids) numbers_.insert(id);
     return {};
   }
 

@@ -40,6 +40,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // A tile begins so, and nothing else that a person has.
+// Of each job: what the faces of tiles are called. No other manifest has it.
+constexpr std::array<const char*, 2> kTileOptions = {"--face-ids", kTileFaceIds};
+
 constexpr std::string_view kTileStart =
     "ply\nformat binary_little_endian 1.0\ncomment a tile of a world, made by boxtree tile\n";
 
@@ -163,7 +166,7 @@ class World {
     if (!text) return text.error();
     const auto jobs = parse_manifest(*text, options_.jobs.string());
     const auto is_tile = [](const ManifestLine& job) {
-      return std::find(job.options.begin(), job.options.end(), kTileFaceIds) != job.options.end();
+      return !std::ranges::search(job.options, kTileOptions).empty();
     };
     if (jobs && std::all_of(jobs->begin(), jobs->end(), is_tile)) return {};
     return Error{Errc::kWriteFailed,
@@ -388,7 +391,7 @@ class World {
   Status write_jobs(const TileTree& tree) const {
     Json words = Json::array();
     for (const std::string& word : options_.cook_options) words.push_back(word);
-    for (const char* word : {"--face-ids", kTileFaceIds}) words.push_back(word);
+    for (const char* word : kTileOptions) words.push_back(word);
     std::string lines;
     for (const TileTree::Tile& tile : tree.tiles()) {
       const Json job = {{"inputs", Json::array({file_of(tile, ".ply").generic_string()})},

@@ -256,9 +256,9 @@ grep -q 'matrix: expected 16 numbers between commas, found "1,2,3"' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix inf,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1
 grep -q 'invalid_query: cube.bxt: frustum: planes: expected a matrix of finite numbers, .*found matrix \[inf,0,0,0,' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --instances
-same "$(cat err)" 'boxtree: no_scene: cube.bxt: instances are those of a scene, and this is one tree; leave --instances out for its faces, or query a file of cook --scene, without --tree (of a pack, with --scene TREE)'
+same "$(cat err)" 'boxtree: no_scene: cube.bxt: instances are those of a scene, and this is one tree; leave --instances out for its faces, or query a file of cook --scene, without --tree (of a pack, with --scene NAME)'
 expect 1 "$boxtree" query cube.bxt contacts
-same "$(cat err)" 'boxtree: no_scene: cube.bxt: contacts are those of a scene, and this is one tree; of a tree use collide or pair, or query a file of cook --scene, without --tree (of a pack, with --scene TREE)'
+same "$(cat err)" 'boxtree: no_scene: cube.bxt: contacts are those of a scene, and this is one tree; of a tree use collide or pair, or query a file of cook --scene, without --tree (of a pack, with --scene NAME)'
 # The error of a hull's file is told by its name, not by that of the tree.
 for kind in collide 'cast --direction 0,0,-1'; do
   # shellcheck disable=SC2086
