@@ -27,7 +27,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct BenchArguments {
   std::vector<std::filesystem::path> files;
   std::size_t runs = 5;
   bool calibrate = false;
@@ -38,13 +38,13 @@ struct Arguments {
 };
 
 // A tenth of the queries: for a look, not for a figure.
-constexpr WorkloadSize kAllQueries{.camera = 512, .lattice = 32};
-constexpr WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 0, 128, 0, 16};
+constexpr WorkloadSize kWholeWorkload{.camera = 512, .lattice = 32};
+constexpr WorkloadSize kQuickWorkload{20'000, 2'000, 2'000, 20, 0, 128, 0, 16};
 
 Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
-                   const Arguments& arguments) {
-  const Workload workload =
-      make_workload(bounds_in_object_space(tree), arguments.quick ? kQuick : kAllQueries);
+                   const BenchArguments& arguments) {
+  const Workload workload = make_workload(bounds_in_object_space(tree),
+                                          arguments.quick ? kQuickWorkload : kWholeWorkload);
   const Result<QueryFigures> figures = measure_queries(tree, workload, arguments.runs);
   if (!figures) return figures.error();
   const Result<OpenFigures> open = measure_open(path, index, 20 * arguments.runs);
@@ -80,7 +80,7 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
               {"pair_pairs", figures->pair_pairs}};
 }
 
-Json to_json(const std::vector<ApproximateStep>& steps) {
+Json steps_json(const std::vector<ApproximateStep>& steps) {
   Json rows = Json::array();
   for (const ApproximateStep& step : steps) {
     const bool has_budget = step.node_budget != kUnlimitedNodes;
@@ -97,7 +97,7 @@ Json to_json(const std::vector<ApproximateStep>& steps) {
 
 // Cost against the error that is allowed, and against budgets.
 Result<Json> bench_approximate(const std::filesystem::path& path, const Tree& tree,
-                               const Arguments& arguments) {
+                               const BenchArguments& arguments) {
   constexpr WorkloadSize kAll{0, 0, 5'000, 0, 100};
   constexpr WorkloadSize kTenth{0, 0, 500, 0, 20};
   const Workload workload =
@@ -112,8 +112,8 @@ Result<Json> bench_approximate(const std::filesystem::path& path, const Tree& tr
                {"triangles", tree.triangle_count()}};
   for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
     json["approximate"][kApproximateNames[kind]] = {
-        {"by_error", to_json((*figures)[kind].by_error)},
-        {"by_budget", to_json((*figures)[kind].by_budget)}};
+        {"by_error", steps_json((*figures)[kind].by_error)},
+        {"by_budget", steps_json((*figures)[kind].by_budget)}};
   }
   return json;
 }
@@ -183,7 +183,7 @@ void print_row(const CodecCost& cost) {
   fmt::print("\n");
 }
 
-int run_calibration(const Arguments& arguments) {
+int run_calibration(const BenchArguments& arguments) {
   std::vector<SourceMesh> meshes;
   for (const std::filesystem::path& path : arguments.files) {
     Result<Imported> imported = import_mesh(path, careful_import());
@@ -226,7 +226,7 @@ void print_row(const FirstRays& first) {
 
 // What queries read of a file of which nothing has been read.
 Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
-                   const Arguments& arguments) {
+                   const BenchArguments& arguments) {
   const std::size_t queries = arguments.quick ? 100 : 1000;
   const Result<PageFigures> figures = measure_pages(path, index, queries);
   if (!figures) return figures.error();
@@ -254,7 +254,7 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
               {"first_rays", {{"rays", queries}, {"prefetched", std::move(rays)}}}};
 }
 
-int run(const Arguments& arguments) {
+int run(const BenchArguments& arguments) {
   const auto& files = arguments.files;
   if (std::any_of(files.begin(), files.end(), is_standard_stream)) {
     return usage("bench: - (standard input) is no file, and bench times the opening of files, too");
@@ -285,7 +285,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_bench_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BenchArguments>();
   Command& command = program.add_command("bench", "Time queries on .bxt files");
   command
       .add_file("FILE", arguments->files, Values::kCookedFilesAndMeshes,

@@ -35,7 +35,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Arguments {
+struct CookCommandArguments {
   CookArguments cook;
   FarmArguments farm;
   bool why = false;
@@ -45,7 +45,7 @@ struct Arguments {
   int jobs = kAllThreads;
 };
 
-Json report_json(const Arguments& arguments, const Summary& summary, double seconds) {
+Json report_json(const CookCommandArguments& arguments, const Summary& summary, double seconds) {
   Json json = {{"output", arguments.cook.job.output.string()}};
   if (!arguments.cook.job.reordered.empty())
     json["reordered"] = arguments.cook.job.reordered.string();
@@ -56,7 +56,7 @@ Json report_json(const Arguments& arguments, const Summary& summary, double seco
 }
 
 // `output`: the name of what was written.
-std::string report_text(const Arguments& arguments, const std::string& output,
+std::string report_text(const CookCommandArguments& arguments, const std::string& output,
                         const Summary& summary, double seconds) {
   std::string text = summary.scene ? scene_text(summary, arguments.candidates)
                                    : trees_text(summary, arguments.candidates);
@@ -74,7 +74,7 @@ std::string report_text(const Arguments& arguments, const std::string& output,
 }
 
 // What is wrong with the command line as a whole; empty if nothing is.
-std::string contradiction(Arguments& arguments) {
+std::string contradiction(CookCommandArguments& arguments) {
   const CookJob& job = arguments.cook.job;
   if (std::string fault = finish_cook_options(arguments.cook); !fault.empty()) return fault;
   if (is_standard_stream(job.output) && arguments.json)
@@ -98,7 +98,7 @@ Status check_files(const CookJob& job) {
   return check_replaced(job.depfile, OutputKind::kDepfile);
 }
 
-int cook_through_cache(const Arguments& arguments, const CookCache& cache) {
+int cook_through_cache(const CookCommandArguments& arguments, const CookCache& cache) {
   const CookJob& job = arguments.cook.job;
   const Clock::time_point start = Clock::now();
   const Result<JobKey> key = key_of(job);
@@ -129,7 +129,7 @@ int cook_through_cache(const Arguments& arguments, const CookCache& cache) {
   return 0;
 }
 
-int cook_one(Arguments& arguments) {
+int cook_one(CookCommandArguments& arguments) {
   const CookJob& job = arguments.cook.job;
   const Clock::time_point start = Clock::now();
   Result<Summary> cooked = Errc::kInternal;
@@ -157,7 +157,7 @@ int cannot_open_cache(const Error& error) {
   return fail(error);
 }
 
-int run(Arguments& arguments) {
+int run(CookCommandArguments& arguments) {
   const FarmArguments& farm = arguments.farm;
   const bool is_one = farm.manifest.empty();
   CookJob& job = arguments.cook.job;
@@ -188,7 +188,7 @@ int run(Arguments& arguments) {
 }  // namespace
 
 void add_cook_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CookCommandArguments>();
   Command& command = program.add_command(
       "cook",
       "Cook meshes into one .bxt file\n"

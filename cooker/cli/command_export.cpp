@@ -32,7 +32,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct ExportArguments {
   std::filesystem::path file;
   std::filesystem::path output;
   std::string tree;
@@ -72,7 +72,7 @@ std::optional<std::vector<LevelRange>> parse_levels(std::string_view text) {
 }
 
 // What is requested by name is shown; without any name, triangles and the first levels.
-std::optional<ExportOptions> options_of(const Arguments& arguments) {
+std::optional<ExportOptions> options_of(const ExportArguments& arguments) {
   ExportOptions options;
   options.triangles = arguments.triangles || !arguments.boxes;
   const bool named_boxes = arguments.boxes || arguments.leaves || !arguments.levels.empty();
@@ -90,7 +90,8 @@ std::optional<ExportOptions> options_of(const Arguments& arguments) {
   return options;
 }
 
-Result<std::vector<std::uint32_t>> chosen_trees(const Arguments& arguments, const File& file) {
+Result<std::vector<std::uint32_t>> chosen_trees(const ExportArguments& arguments,
+                                                const File& file) {
   std::vector<std::uint32_t> numbers;
   if (arguments.tree.empty()) {
     for (std::uint32_t i = 0; i < file.tree_count(); ++i) numbers.push_back(i);
@@ -148,7 +149,7 @@ class SourceMeshes {
 };
 
 // The trees requested, bound to `meshes` where their geometry is external.
-Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& file,
+Result<std::vector<Tree>> bind_trees(const ExportArguments& arguments, const File& file,
                                      bool with_triangles, std::optional<SourceMeshes>& meshes) {
   const Result<std::vector<std::uint32_t>> numbers = chosen_trees(arguments, file);
   if (!numbers) return numbers.error();
@@ -179,7 +180,7 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
 }
 
 // The scene of the file, unless trees are requested.
-Result<ExportReport> export_file(const Arguments& arguments, const OutputTarget& output,
+Result<ExportReport> export_file(const ExportArguments& arguments, const OutputTarget& output,
                                  const File& file, std::span<const Tree> trees,
                                  const ExportOptions& options) {
   if (!file.has_scene() || arguments.trees || !arguments.tree.empty()) {
@@ -209,7 +210,7 @@ Json tree_json(const ExportedTree& tree, bool is_placed) {
   return json;
 }
 
-Json report_json(const Arguments& arguments, const ExportReport& report) {
+Json report_json(const ExportArguments& arguments, const ExportReport& report) {
   Json json = {{"output", arguments.output.string()}, {"bytes", report.bytes}};
   json["scene"] = nullptr;
   if (report.instances) {
@@ -247,7 +248,7 @@ std::string report_text(const std::string& output, const ExportReport& report,
   return text;
 }
 
-int run(const Arguments& arguments) {
+int run(const ExportArguments& arguments) {
   const std::optional<ExportOptions> options = options_of(arguments);
   if (!options) {
     return usage(fmt::format("export: --levels: expected levels as in 0-3,6, found \"{}\"",
@@ -297,7 +298,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_export_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ExportArguments>();
   Command& command = program.add_command("export",
                                          "Write triangles and boxes for a viewer, as OBJ or glTF\n"
                                          "Without --triangles, --boxes, --levels and --leaves: "

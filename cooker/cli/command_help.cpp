@@ -18,7 +18,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct HelpArguments {
   std::vector<std::string> names;
   bool man = false;
   std::filesystem::path folder;
@@ -36,7 +36,7 @@ int write_pages(const Command& program, const std::filesystem::path& folder) {
   return 0;
 }
 
-int run_help(const Command& program, const Arguments& arguments) {
+int run_help(const Command& program, const HelpArguments& arguments) {
   if (!arguments.folder.empty()) return write_pages(program, arguments.folder);
   const Command* at = &program;
   for (const std::string& word : arguments.names) {
@@ -83,7 +83,7 @@ void add_completion_command(Command& program, int& status) {
 
 void add_help_command(Command& program, int& status) {
   Command& command = program.add_command("help", "Show what a command does and takes");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<HelpArguments>();
   Option* names = command.add_option("COMMAND", arguments->names, "A command, and a kind of query")
                       ->takes(Values::kCommands);
   command.add_flag("--man", arguments->man, "Print the man page, in troff");

@@ -35,7 +35,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct InfoArguments {
   std::vector<std::filesystem::path> files;
   bool json = false;
 };
@@ -326,7 +326,7 @@ Result<Json> info_on(const std::filesystem::path& path) {
 }
 
 // A file that cannot be read keeps nothing from being said of the others.
-int run(const Arguments& arguments) {
+int run(const InfoArguments& arguments) {
   int status = 0;
   std::vector<Json> documents;
   for (const std::filesystem::path& path : arguments.files) {
@@ -361,7 +361,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_info_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<InfoArguments>();
   Command& command =
       program.add_command("info", "Show what a .bxt file holds and what each part takes");
   command

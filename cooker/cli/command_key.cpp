@@ -27,7 +27,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct KeyArguments {
   CookArguments cook;
   FarmArguments farm;
   bool inputs = false;
@@ -35,7 +35,7 @@ struct Arguments {
   bool json = false;
 };
 
-Json to_json(const CookJob& job, const JobKey& key) {
+Json key_json(const CookJob& job, const JobKey& key) {
   Json json = {{"key", hex_of(key.key)}};
   json["output"] = job.output.empty() ? Json(nullptr) : Json(job.output.string());
   json["inputs"] = Json::array();
@@ -59,7 +59,7 @@ int print_files(const CookJob& job) {
   return 0;
 }
 
-int key_of_one(Arguments& arguments) {
+int key_of_one(KeyArguments& arguments) {
   const CookJob& job = arguments.cook.job;
   if (const std::string fault = finish_cook_options(arguments.cook); !fault.empty())
     return usage("key: " + fault);
@@ -70,7 +70,7 @@ int key_of_one(Arguments& arguments) {
   if (arguments.explain) {
     fmt::print("{}", key_text(job, key->files));
   } else if (arguments.json) {
-    print(Json{{"jobs", Json::array({to_json(job, *key)})}});
+    print(Json{{"jobs", Json::array({key_json(job, *key)})}});
   } else {
     print_line(job, *key);
   }
@@ -101,7 +101,7 @@ class Keys {
   std::vector<std::optional<Result<JobKey>>> results_;
 };
 
-int keys_of_manifest(const Arguments& arguments) {
+int keys_of_manifest(const KeyArguments& arguments) {
   const Result<ManifestJobs> jobs = ManifestJobs::read(arguments.farm.manifest);
   if (!jobs) return fail(jobs.error());
   constexpr std::size_t kPart = 256;  // so that what waits to be printed stays small
@@ -117,7 +117,7 @@ int keys_of_manifest(const Arguments& arguments) {
           const int failed = fail(in_file(jobs->place(i), key.error()));
           if (status == 0) status = failed;
         } else if (arguments.json) {
-          documents.push_back(to_json(jobs->job(i), *key));
+          documents.push_back(key_json(jobs->job(i), *key));
         } else {
           print_line(jobs->job(i), *key);
         }
@@ -131,7 +131,7 @@ int keys_of_manifest(const Arguments& arguments) {
 }  // namespace
 
 void add_key_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<KeyArguments>();
   Command& command = program.add_command(
       "key",
       "Print what a cook depends on, without cooking\n"

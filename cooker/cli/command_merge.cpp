@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct MergeArguments {
   std::vector<fs::path> files;
   fs::path manifest;
   fs::path output;
@@ -48,7 +48,7 @@ Result<File> open_tile(const fs::path& path) {
                    "cook it with another codec"};
 }
 
-Status check_output(const Arguments& arguments, const OutputTarget& output) {
+Status check_output(const MergeArguments& arguments, const OutputTarget& output) {
   if (output.stream) return {};
   if (const std::string fault = mesh_name_fault(output.path, ".bxt"); !fault.empty()) {
     return Error{Errc::kWriteFailed, fault};
@@ -61,19 +61,19 @@ Status check_output(const Arguments& arguments, const OutputTarget& output) {
   return check_replaced(output.path, OutputKind::kCooked);
 }
 
-std::string cook_command(const Arguments& arguments) {
+std::string cook_command(const MergeArguments& arguments) {
   return "boxtree cook --manifest " + shown(arguments.manifest.string());
 }
 
 // Adds what makes a tile of the manifest that is missing.
-Error explained(const Arguments& arguments, const Error& error) {
+Error explained(const MergeArguments& arguments, const Error& error) {
   if (arguments.manifest.empty() || error.code != Errc::kFileNotFound) return error;
   return {error.code, error.detail + "; " + cook_command(arguments) + " makes it"};
 }
 
 // Refuses a tile that is not of its sources as they are now. The number of those that cannot be
 // compared.
-Result<std::size_t> check_sources(const Arguments& arguments, const ManifestJobs& jobs,
+Result<std::size_t> check_sources(const MergeArguments& arguments, const ManifestJobs& jobs,
                                   StepPrinter& step) {
   using Comparison = SourceComparison::Result;
   std::size_t unchecked = 0;
@@ -94,7 +94,7 @@ Result<std::size_t> check_sources(const Arguments& arguments, const ManifestJobs
   return unchecked;
 }
 
-int run(Arguments& arguments) {
+int run(MergeArguments& arguments) {
   if (is_standard_stream(arguments.output) && arguments.json) {
     return usage("merge: --json and -o - cannot share standard output");
   }
@@ -148,7 +148,7 @@ int run(Arguments& arguments) {
 }  // namespace
 
 void add_merge_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<MergeArguments>();
   Command& command = program.add_command(
       "merge",
       "Make one scene of the tiles of a world, without cooking\n"

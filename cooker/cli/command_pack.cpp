@@ -24,7 +24,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct PackArguments {
   std::vector<std::filesystem::path> files;
   std::filesystem::path output;
   std::string names = "tree";
@@ -43,7 +43,7 @@ Result<File> open_input(const std::filesystem::path& path) {
                    "cook it with another codec"};
 }
 
-Status check_output(const Arguments& arguments, const OutputTarget& output) {
+Status check_output(const PackArguments& arguments, const OutputTarget& output) {
   if (output.stream) return {};
   if (const std::string fault = mesh_name_fault(output.path, ".bxt"); !fault.empty()) {
     return Error{Errc::kWriteFailed, fault};
@@ -54,7 +54,7 @@ Status check_output(const Arguments& arguments, const OutputTarget& output) {
   return check_replaced(output.path, OutputKind::kCooked);
 }
 
-int run(const Arguments& arguments) {
+int run(const PackArguments& arguments) {
   if (is_standard_stream(arguments.output) && arguments.json) {
     return usage("pack: --json and -o - cannot share standard output");
   }
@@ -93,7 +93,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_pack_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<PackArguments>();
   Command& command =
       program.add_command("pack",
                           "Put many cooked files into one, without cooking\n"

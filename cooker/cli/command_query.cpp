@@ -37,7 +37,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct QueryArguments {
   std::filesystem::path file;
   std::string tree;   // empty: the scene of the file, or else its first tree
   std::string scene;  // a tree of the scene to query; empty: the file's
@@ -48,7 +48,7 @@ struct Arguments {
 };
 
 // A key a line. Lists of objects or of lists, of which there may be hundreds, have a line for each.
-void print_answer(const Arguments& arguments, const Json& json) {
+void print_answer(const QueryArguments& arguments, const Json& json) {
   if (arguments.json) return print(json);
   for (const auto& [key, value] : json.items()) {
     const bool is_list = value.is_array() && !value.empty() && value.front().is_structured();
@@ -125,7 +125,7 @@ class BatchLines {
 // A line that cannot be answered gets an error in its place; at the end the first is told with the
 // number of all, and its exit status.
 using AnswerRequest = std::function<Result<Json>(const BatchRequest& line, TreeCache& others)>;
-int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
+int run_batch(const QueryArguments& arguments, const AnswerRequest& answer_request,
               const RequestDefaults& defaults) {
   BatchLines lines(arguments.batch);
   const bool is_interactive = lines.is_interactive();
@@ -190,7 +190,7 @@ std::filesystem::path other_file(const QueryRequest& request) {
 
 // The error of a query or a scene of the file, behind its name, unless it is that of the other
 // file.
-Error in_queried_file(const Arguments& arguments, const std::filesystem::path& other,
+Error in_queried_file(const QueryArguments& arguments, const std::filesystem::path& other,
                       const Error& error) {
   const bool is_of_other = !other.empty() && error.detail.starts_with(input_name(other) + ": ");
   if (is_of_other) return error;
@@ -202,7 +202,7 @@ Error in_queried_file(const Arguments& arguments, const std::filesystem::path& o
 // Contacts are those of moving instances: where there is none, the answer is always the same.
 class StillSceneWarning {
  public:
-  explicit StillSceneWarning(const Arguments& arguments) : arguments_(arguments) {}
+  explicit StillSceneWarning(const QueryArguments& arguments) : arguments_(arguments) {}
 
   // The answer. Warns once for all lines of a batch; not of a query that has no answer, whose error
   // says more.
@@ -238,7 +238,7 @@ class StillSceneWarning {
     return moving;
   }
 
-  const Arguments& arguments_;
+  const QueryArguments& arguments_;
   bool is_told_ = false;
 };
 
@@ -280,7 +280,7 @@ Result<File> scene_around(const File& pack, const std::string& tree) {
 }
 
 // Without a batch, `defaults` is the query.
-int run(const Arguments& arguments, const RequestDefaults& defaults) {
+int run(const QueryArguments& arguments, const RequestDefaults& defaults) {
   const bool is_file =
       is_standard_stream(arguments.file) || is_standard_stream(second_file(defaults.request));
   if (is_file && is_standard_stream(arguments.batch)) {
@@ -506,7 +506,7 @@ class OptionFields {
 struct Around {
   Command& query;
   const Option* batch;
-  std::shared_ptr<Arguments> arguments;
+  std::shared_ptr<QueryArguments> arguments;
 };
 
 template <class Kind>
@@ -535,7 +535,7 @@ void add_kind(const Around& around, int& status) {
 }  // namespace
 
 void add_query_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<QueryArguments>();
   Command& command = program.add_command("query",
                                          "Query a .bxt file\n"
                                          "Queries one tree or a scene, or two trees against each "

@@ -38,7 +38,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   std::vector<std::filesystem::path> meshes;
   std::filesystem::path output;
   std::filesystem::path json_out;
@@ -57,21 +57,21 @@ struct Arguments {
 };
 
 // Those that were not given are empty.
-std::array<Output, 4> outputs_of(const Arguments& arguments) {
+std::array<Output, 4> outputs_of(const ReportArguments& arguments) {
   return {{{arguments.output},
            {arguments.json_out, "--json-out"},
            {arguments.csv, "--csv"},
            {arguments.approximate_csv, "--csv-approximate"}}};
 }
 
-bool has_output(const Arguments& arguments) {
+bool has_output(const ReportArguments& arguments) {
   const auto outputs = outputs_of(arguments);
   return std::any_of(outputs.begin(), outputs.end(),
                      [](const Output& output) { return !output.path.empty(); });
 }
 
 // How many of the outputs are standard output, which the summary must leave alone.
-std::ptrdiff_t count_standard_outputs(const Arguments& arguments) {
+std::ptrdiff_t count_standard_outputs(const ReportArguments& arguments) {
   const auto outputs = outputs_of(arguments);
   return std::count_if(outputs.begin(), outputs.end(),
                        [](const Output& output) { return is_standard_stream(output.path); });
@@ -84,7 +84,7 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& mesh
   return names;
 }
 
-Result<std::vector<PeerRow>> measure_paper_peers(const Arguments& arguments) {
+Result<std::vector<PeerRow>> measure_paper_peers(const ReportArguments& arguments) {
   std::vector<std::string> options = names_of(arguments.meshes);
   const char* const turns = arguments.quick ? "2" : "12";
   const char* const runs = arguments.quick ? "1" : "5";
@@ -95,7 +95,7 @@ Result<std::vector<PeerRow>> measure_paper_peers(const Arguments& arguments) {
 }
 
 // Everything but our own codecs, which are measured here; quickly: those that take seconds.
-Result<std::vector<PeerRow>> measure_tradeoff_peers(const Arguments& arguments) {
+Result<std::vector<PeerRow>> measure_tradeoff_peers(const ReportArguments& arguments) {
   std::vector<std::string> options = names_of(arguments.meshes);
   options.insert(options.end(), {"--queries", "single", "--queries", "pairs", "--only", "original",
                                  "--only", "embree"});
@@ -108,7 +108,7 @@ Result<std::vector<PeerRow>> measure_tradeoff_peers(const Arguments& arguments) 
   return run_peers(arguments.peers, options, true);
 }
 
-Json to_json(const PaperFigures& mesh) {
+Json mesh_json(const PaperFigures& mesh) {
   Json codecs = Json::array();
   for (const CodecSizes& codec : mesh.codecs) {
     const auto triangles = static_cast<double>(mesh.triangles);
@@ -162,9 +162,9 @@ Json to_json(const PaperFigures& mesh) {
             {"escapes_outward", rounding.gates_outward.escapes}}}};
 }
 
-Json to_json(const PaperReport& report) {
+Json paper_json(const PaperReport& report) {
   Json meshes = Json::array();
-  for (const PaperFigures& mesh : report.meshes) meshes.push_back(to_json(mesh));
+  for (const PaperFigures& mesh : report.meshes) meshes.push_back(mesh_json(mesh));
   Json stairs = Json::array();
   for (const StairFigures& row : report.stairs) {
     stairs.push_back({{"depth", row.depth},
@@ -210,7 +210,7 @@ Status write_text(const std::filesystem::path& path, const std::string& text,
 
 // Page and figures, where they are wanted; and what the terminal is shown, with --json the figures,
 // else a summary and what was written, with what is in `written` by then.
-int write_report(const Arguments& arguments, const Page& page, const Json& figures,
+int write_report(const ReportArguments& arguments, const Page& page, const Json& figures,
                  const Page& summary, std::vector<Written> written = {}) {
   if (Status status = write_text(arguments.output, to_html(page), written); !status) {
     return fail(status.error());
@@ -230,7 +230,7 @@ int write_report(const Arguments& arguments, const Page& page, const Json& figur
   return 0;
 }
 
-std::string command_of(const Arguments& arguments) {
+std::string command_of(const ReportArguments& arguments) {
   std::string command = "boxtree report";
   if (arguments.paper) command += " --paper";
   if (arguments.quick) command += " --quick";
@@ -241,7 +241,7 @@ std::string command_of(const Arguments& arguments) {
   return command;
 }
 
-Result<SourceMesh> read_mesh(const std::filesystem::path& path, const Arguments& arguments) {
+Result<SourceMesh> read_mesh(const std::filesystem::path& path, const ReportArguments& arguments) {
   ImportOptions options = careful_import();
   if (arguments.f64) options.precision = Precision::kF64;
   Result<Imported> imported = import_mesh(path, options);
@@ -255,7 +255,7 @@ Result<SourceMesh> read_mesh(const std::filesystem::path& path, const Arguments&
   return std::move(imported->mesh);
 }
 
-Result<PaperReport> measure_paper(const Arguments& arguments) {
+Result<PaperReport> measure_paper(const ReportArguments& arguments) {
   PaperReport report;
   report.command = command_of(arguments);
   const bool has_peers = !arguments.no_times && !arguments.peers.empty();
@@ -287,21 +287,21 @@ Result<PaperReport> measure_paper(const Arguments& arguments) {
   return report;
 }
 
-int run_paper(const Arguments& arguments) {
+int run_paper(const ReportArguments& arguments) {
   const Result<PaperReport> report = measure_paper(arguments);
   if (!report) return fail(report.error());
   const Page page = paper_page(*report);
-  return write_report(arguments, page, to_json(*report), page);
+  return write_report(arguments, page, paper_json(*report), page);
 }
 
 // Why other libraries are not in the report; empty when they are.
-std::string why_no_peers(const Arguments& arguments) {
+std::string why_no_peers(const ReportArguments& arguments) {
   if (arguments.no_times) return "--no-times";
   if (arguments.peers.empty()) return "no --peers PROGRAM";
   return {};
 }
 
-Result<TradeoffReport> measure_all(const Arguments& arguments) {
+Result<TradeoffReport> measure_all(const ReportArguments& arguments) {
   TradeoffReport report;
   report.quick = arguments.quick;
   report.surroundings = surroundings(command_of(arguments));
@@ -336,7 +336,7 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
   return report;
 }
 
-int run_tradeoff(const Arguments& arguments) {
+int run_tradeoff(const ReportArguments& arguments) {
   const Result<TradeoffReport> report = measure_all(arguments);
   if (!report) return fail(report.error());
   for (const MeshTradeoff& mesh : report->meshes) {
@@ -355,7 +355,7 @@ int run_tradeoff(const Arguments& arguments) {
 }
 
 // A mesh by whose ending an output was meant; empty if there is none.
-std::string misplaced_output(const Arguments& arguments) {
+std::string misplaced_output(const ReportArguments& arguments) {
   constexpr std::array<std::pair<const char*, const char*>, 4> kOptions = {
       {{".html", "-o"}, {".htm", "-o"}, {".csv", "--csv"}, {".json", "--json-out"}}};
   for (const std::filesystem::path& mesh : arguments.meshes) {
@@ -368,7 +368,7 @@ std::string misplaced_output(const Arguments& arguments) {
   return {};
 }
 
-int run(const Arguments& arguments) {
+int run(const ReportArguments& arguments) {
   const auto& meshes = arguments.meshes;
   if (std::any_of(meshes.begin(), meshes.end(), is_standard_stream)) {
     return usage("report: - (standard input) is no file; expected names of meshes");
@@ -423,7 +423,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_report_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReportArguments>();
   Command& command = program.add_command(
       "report",
       "Show which encoding to use for meshes: bytes, times and errors\n"

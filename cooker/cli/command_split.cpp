@@ -33,7 +33,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct SplitArguments {
   std::filesystem::path file;
   std::filesystem::path folder;
   std::vector<std::string> trees;
@@ -49,7 +49,7 @@ struct Chosen {
 };
 
 // Of all members, or of those that the trees are in, in the order of the pack.
-Result<std::vector<Chosen>> choose_members(const Arguments& arguments, const File& pack) {
+Result<std::vector<Chosen>> choose_members(const SplitArguments& arguments, const File& pack) {
   std::vector<std::uint32_t> wanted;
   for (const std::string& tree : arguments.trees) {
     const Result<std::uint32_t> number = find_tree(pack, {tree});
@@ -91,7 +91,7 @@ Status write_member(const File& pack, const Chosen& member) {
   return out->commit();
 }
 
-int run(const Arguments& arguments) {
+int run(const SplitArguments& arguments) {
   const Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
   const File& pack = opened->file;
@@ -158,7 +158,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_split_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SplitArguments>();
   Command& command = program.add_command(
       "split",
       "Take the files out of a pack, as they were put in\n"

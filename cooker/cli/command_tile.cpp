@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct TileArguments {
   TileOptions options;
   std::string memory = "1G";
   std::string grid_step;
@@ -31,7 +31,7 @@ struct Arguments {
   bool json = false;
 };
 
-int run(Arguments& arguments) {
+int run(TileArguments& arguments) {
   TileOptions& options = arguments.options;
   for (const fs::path& source : options.sources) {
     if (is_standard_stream(source)) {
@@ -94,7 +94,7 @@ int run(Arguments& arguments) {
 }  // namespace
 
 void add_tile_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<TileArguments>();
   TileOptions& options = arguments->options;
   Command& command = program.add_command(
       "tile",

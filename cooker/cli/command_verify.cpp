@@ -29,7 +29,7 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Arguments {
+struct VerifyArguments {
   std::vector<std::filesystem::path> files;
   std::filesystem::path mesh;
   bool quiet = false;
@@ -91,7 +91,7 @@ Verification verify_one(const std::filesystem::path& path, const std::filesystem
   return verification;
 }
 
-Json to_json(const std::filesystem::path& file, const Verification& verification) {
+Json verification_json(const std::filesystem::path& file, const Verification& verification) {
   Json json = {{"file", file.string()}, {"ok", verification.findings.empty()}};
   json["findings"] = Json::array();
   for (const Error& finding : verification.findings) {
@@ -114,7 +114,7 @@ void print_verification(const std::filesystem::path& file, const Verification& v
   }
 }
 
-int run(const Arguments& arguments) {
+int run(const VerifyArguments& arguments) {
   if (!arguments.mesh.empty() && arguments.files.size() > 1) {
     return usage("verify: --mesh goes with one file");
   }
@@ -124,7 +124,7 @@ int run(const Arguments& arguments) {
     for (const std::filesystem::path& file : arguments.files) {
       const Verification verification = verify_one(file, arguments.mesh);
       if (arguments.json) {
-        documents.push_back(to_json(file, verification));
+        documents.push_back(verification_json(file, verification));
       } else {
         print_verification(file, verification, arguments.quiet);
       }
@@ -138,7 +138,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_verify_command(Command& program, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<VerifyArguments>();
   Command& command = program.add_command(
       "verify",
       "Prove that a .bxt file holds what it promises\n"

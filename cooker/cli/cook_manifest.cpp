@@ -86,7 +86,7 @@ class Counts {
       may_pass_ = may_pass_ || may_pass(line.error);
     } else {
       ++of_[static_cast<std::size_t>(line.outcome->how)];
-      audited_ += line.outcome->is_audited ? 1 : 0;
+      if (line.outcome->is_audited) ++audited_;
     }
   }
 

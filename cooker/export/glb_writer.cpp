@@ -46,7 +46,7 @@ constexpr int kTriangleMaterial = -2;
 constexpr int kLeafMaterial = -1;
 
 // One mesh with one primitive: its place in the buffer and the values of its accessors.
-struct Part {
+struct GlbPart {
   const BoxGroup* group = nullptr;  // null: the triangles
   std::uint64_t vertex_count = 0;
   std::uint64_t index_count = 0;
@@ -72,7 +72,7 @@ struct Part {
 struct PlannedTree {
   const ShownTree* shown;
   Eigen::Vector3d translation;
-  std::vector<Part> parts;
+  std::vector<GlbPart> parts;
 };
 
 // Subtraction and rounding are monotone, so points stay inside their boxes.
@@ -109,24 +109,24 @@ PlacedBox placed(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& translat
   return result;
 }
 
-void extend(Part& part, const Position& low, const Position& high) {
+void extend(GlbPart& part, const Position& low, const Position& high) {
   for (std::size_t k = 0; k < 3; ++k) {
     part.low[k] = std::min(part.low[k], low[k]);
     part.high[k] = std::max(part.high[k], high[k]);
   }
 }
 
-Part empty_part() {
+GlbPart empty_part() {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Part part;
+  GlbPart part;
   part.low.fill(kInfinity);
   part.high.fill(-kInfinity);
   return part;
 }
 
-Result<Part> plan_faces(const ShownTree& shown, const Eigen::Vector3d& translation) {
+Result<GlbPart> plan_faces(const ShownTree& shown, const Eigen::Vector3d& translation) {
   const DecodedFaces& faces = *shown.faces;
-  Part part = empty_part();
+  GlbPart part = empty_part();
   part.vertex_count = faces.vertex_count();
   part.index_count = 3 * faces.triangle_count();
   for (std::uint32_t v = 0; v < faces.vertex_count(); ++v) {
@@ -140,9 +140,9 @@ Result<Part> plan_faces(const ShownTree& shown, const Eigen::Vector3d& translati
   return part;
 }
 
-Part plan_boxes(const ShownTree& shown, const BoxGroup& group, bool solid,
-                const Eigen::Vector3d& translation) {
-  Part part = empty_part();
+GlbPart plan_boxes(const ShownTree& shown, const BoxGroup& group, bool solid,
+                   const Eigen::Vector3d& translation) {
+  GlbPart part = empty_part();
   part.group = &group;
   part.vertex_count = 8 * group.count;
   part.index_count = group.count * (solid ? 6 * kBoxSides.size() : 2 * kBoxEdges.size());
@@ -160,14 +160,14 @@ Result<std::vector<PlannedTree>> plan(std::span<const ShownTree> trees, bool sol
   for (const ShownTree& shown : trees) {
     PlannedTree tree{&shown, glb_translation(shown.tree), {}};
     if (shown.faces && shown.faces->face_count() > 0) {
-      Result<Part> part = plan_faces(shown, tree.translation);
+      Result<GlbPart> part = plan_faces(shown, tree.translation);
       if (!part) return part.error();
       tree.parts.push_back(*part);
     }
     for (const BoxGroup& group : shown.boxes) {
       tree.parts.push_back(plan_boxes(shown, group, solid, tree.translation));
     }
-    for (Part& part : tree.parts) {
+    for (GlbPart& part : tree.parts) {
       part.offset = bytes;
       bytes = part.end();
       if (part.vertex_count > kMaxVertexCount ||
@@ -226,7 +226,7 @@ class Document {
     if (!tree.translation.isZero(0)) {
       node["translation"] = {tree.translation[0], tree.translation[1], tree.translation[2]};
     }
-    for (const Part& part : tree.parts) {
+    for (const GlbPart& part : tree.parts) {
       const std::size_t mesh = add_mesh(part, part.name());
       node["children"].push_back(append("nodes", {{"name", part.name()}, {"mesh", mesh}}));
     }
@@ -242,7 +242,7 @@ class Document {
     std::vector<std::size_t> first_mesh;  // of each tree; those of its other parts follow
     for (const PlannedTree& tree : trees) {
       first_mesh.push_back(json_.contains("meshes") ? json_["meshes"].size() : 0);
-      for (const Part& part : tree.parts) {
+      for (const GlbPart& part : tree.parts) {
         const std::string& name = tree.shown->name;
         add_mesh(part, part.group == nullptr ? name : name + " " + part.name());
       }
@@ -260,7 +260,7 @@ class Document {
     const std::vector<Pose> matrices = node_matrices(pose);
     Json node = {{"name", instance.name}};
     set_matrix(node, matrices.back());
-    for (const Part& part : tree.parts) {
+    for (const GlbPart& part : tree.parts) {
       if (part.group == nullptr) {
         node["mesh"] = mesh++;
       } else {
@@ -285,7 +285,7 @@ class Document {
     node["matrix"] = std::move(numbers);
   }
 
-  std::size_t add_mesh(const Part& part, const std::string& name) {
+  std::size_t add_mesh(const GlbPart& part, const std::string& name) {
     const std::size_t positions = append("bufferViews", {{"buffer", 0},
                                                          {"byteOffset", part.offset},
                                                          {"byteLength", part.position_bytes()},
@@ -313,7 +313,7 @@ class Document {
     return append("meshes", {{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
   }
 
-  std::size_t material_of(const Part& part) {
+  std::size_t material_of(const GlbPart& part) {
     const auto [place, is_new] = materials_.try_emplace(part.material(), 0);
     if (is_new) {
       place->second = append("materials", {{"name", part.name()},
@@ -334,7 +334,7 @@ class Document {
 // The bytes of one part, positions first.
 class PartBytes {
  public:
-  PartBytes(const PlannedTree& tree, const Part& part, bool solid, ByteSink& out)
+  PartBytes(const PlannedTree& tree, const GlbPart& part, bool solid, ByteSink& out)
       : tree_(tree), part_(part), solid_(solid), out_(out) {}
 
   void write() {
@@ -394,7 +394,7 @@ class PartBytes {
   }
 
   const PlannedTree& tree_;
-  const Part& part_;
+  const GlbPart& part_;
   bool solid_;
   ByteSink& out_;
 };
@@ -435,7 +435,7 @@ Status write_glb(const Shown& shown, bool solid_boxes, ByteSink& out) {
   if (binary_bytes == 0) return {};
   out.put(std::array{static_cast<std::uint32_t>(binary_bytes), kBinaryChunk});
   for (const PlannedTree& tree : *planned) {
-    for (const Part& part : tree.parts) PartBytes(tree, part, solid_boxes, out).write();
+    for (const GlbPart& part : tree.parts) PartBytes(tree, part, solid_boxes, out).write();
   }
   return {};
 }

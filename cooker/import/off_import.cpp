@@ -30,10 +30,10 @@ bool is_integer(std::string_view word) {
 
 // T is the type of the positions.
 template <class T>
-class Reader {
+class OffReader {
  public:
-  Reader(std::string_view text, const std::string& file, const ImportOptions& options,
-         IndexedMesh<T>& mesh)
+  OffReader(std::string_view text, const std::string& file, const ImportOptions& options,
+            IndexedMesh<T>& mesh)
       : rest_(text), file_(file), options_(options), mesh_(mesh) {}
 
   Status read();
@@ -71,7 +71,7 @@ class Reader {
 };
 
 template <class T>
-Status Reader<T>::read() {
+Status OffReader<T>::read() {
   if (Status status = read_header(); !status.ok()) return status;
   if (Status status = read_counts(); !status.ok()) return status;
   if (Status status = mesh_.begin_vertices(vertices_); !status.ok()) return status;
@@ -101,7 +101,7 @@ Status Reader<T>::read() {
 
 // Moves to the next word that is not a comment; false at the end.
 template <class T>
-bool Reader<T>::find_word() {
+bool OffReader<T>::find_word() {
   while (word_ == line_words_.size()) {
     if (rest_.empty()) return false;
     const std::string_view text = take_line(rest_);
@@ -114,7 +114,7 @@ bool Reader<T>::find_word() {
 
 // Appends the next words to `taken_`, across line ends.
 template <class T>
-Status Reader<T>::take_words(std::size_t count, const char* of) {
+Status OffReader<T>::take_words(std::size_t count, const char* of) {
   for (std::size_t i = 0; i < count; ++i) {
     if (!find_word()) return failure(fmt::format("the file ends within {}{}", of, kAsIfCut));
     taken_.push_back(line_words_[word_++]);
@@ -124,7 +124,7 @@ Status Reader<T>::take_words(std::size_t count, const char* of) {
 
 // [ST][C][N][4][n]OFF, or missing: then the counts come first.
 template <class T>
-Status Reader<T>::read_header() {
+Status OffReader<T>::read_header() {
   if (!find_word()) return failure("no OFF header");
   std::string_view key = line_words_[word_];
   if (read_integer(key)) return {};
@@ -146,7 +146,7 @@ Status Reader<T>::read_header() {
 }
 
 template <class T>
-Status Reader<T>::read_dimensions() {
+Status OffReader<T>::read_dimensions() {
   const std::optional<std::int64_t> dimensions =
       find_word() ? read_integer(line_words_[word_]) : std::nullopt;
   if (!dimensions || *dimensions < 1 || *dimensions > 3) {
@@ -159,7 +159,7 @@ Status Reader<T>::read_dimensions() {
 
 // Numbers of vertices, faces and edges; the last may be missing.
 template <class T>
-Status Reader<T>::read_counts() {
+Status OffReader<T>::read_counts() {
   taken_.clear();
   if (!take_words(2, "the counts").ok()) return failure("no counts of vertices and faces");
   const std::optional<std::uint64_t> vertices = read_count(taken_[0]);
@@ -183,7 +183,7 @@ Status Reader<T>::read_counts() {
 // A line per element, as in nearly all files, or `count` words. Only the line shows whether a color
 // has three numbers or four.
 template <class T>
-Status Reader<T>::read_vertex() {
+Status OffReader<T>::read_vertex() {
   const std::size_t needed = dimensions_ + (is_homogeneous_ ? 1 : 0);
   const bool is_line =
       word_ == 0 && line_words_.size() >= needed + others_ + (has_colors_ ? 3u : 0u);
@@ -203,7 +203,7 @@ Status Reader<T>::read_vertex() {
 
 // The number of corners and their vertices; the rest of the line is a color.
 template <class T>
-Status Reader<T>::read_face() {
+Status OffReader<T>::read_face() {
   const std::string_view stated = line_words_[word_++];
   const std::optional<std::uint64_t> count = read_count(stated);
   if (!count || *count > rest_.size() + line_words_.size()) {
@@ -224,7 +224,7 @@ Status Reader<T>::read_face() {
 
 // Reads into `corners_`. The first corner without a vertex is a fault of the face, if it is a face.
 template <class T>
-Result<std::optional<FaceFault>> Reader<T>::read_corners() {
+Result<std::optional<FaceFault>> OffReader<T>::read_corners() {
   std::optional<FaceFault> fault;
   corners_.clear();
   for (const std::string_view word : taken_) {
@@ -249,7 +249,7 @@ Status import_off(const SourceFile& source, const ImportOptions& options, Import
   const auto read = [&]<class T>(std::string_view text, const std::string& file,
                                  std::vector<T>& positions) {
     IndexedMesh<T> mesh(file, options, positions, out);
-    return Reader<T>(text, file, options, mesh).read();
+    return OffReader<T>(text, file, options, mesh).read();
   };
   return read_text_into(source, options, out, read);
 }

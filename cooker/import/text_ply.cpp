@@ -30,10 +30,10 @@ std::optional<std::uint32_t> read_32_bits(std::string_view word) {
 
 // T is the type of the positions.
 template <class T>
-class Reader {
+class TextPlyReader {
  public:
-  Reader(std::string_view text, const PlyLayout& layout, const std::string& file,
-         IndexedMesh<T>& mesh)
+  TextPlyReader(std::string_view text, const PlyLayout& layout, const std::string& file,
+                IndexedMesh<T>& mesh)
       : rest_(text.substr(layout.header.bytes)),
         line_(layout.header.lines),
         layout_(layout),
@@ -70,7 +70,7 @@ class Reader {
 };
 
 template <class T>
-Status Reader<T>::read() {
+Status TextPlyReader<T>::read() {
   if (Status status = check_counts(); !status.ok()) return status;
   if (Status status = mesh_.begin_vertices(layout_.vertex->count); !status.ok()) return status;
   if (layout_.face != nullptr) {
@@ -91,7 +91,7 @@ Status Reader<T>::read() {
 
 // Each element takes a line: a larger count is false, and no memory is reserved for it.
 template <class T>
-Status Reader<T>::check_counts() const {
+Status TextPlyReader<T>::check_counts() const {
   for (const PlyElement& element : layout_.header.elements) {
     if (element.count <= rest_.size() || element.properties.empty()) continue;
     return Error{Errc::kImportFailed,
@@ -103,7 +103,7 @@ Status Reader<T>::check_counts() const {
 
 // Moves to the next line with a word; false at the end.
 template <class T>
-bool Reader<T>::next_row() {
+bool TextPlyReader<T>::next_row() {
   while (!rest_.empty()) {
     split_tokens(take_line(rest_), row_);
     ++line_;
@@ -113,7 +113,7 @@ bool Reader<T>::next_row() {
 }
 
 template <class T>
-Status Reader<T>::read_element(const PlyElement& element) {
+Status TextPlyReader<T>::read_element(const PlyElement& element) {
   if (element.properties.empty()) return {};
   for (std::uint64_t i = 0; i < element.count; ++i) {
     if (!next_row()) {
@@ -127,7 +127,7 @@ Status Reader<T>::read_element(const PlyElement& element) {
 }
 
 template <class T>
-Status Reader<T>::check_row(const PlyElement& element, std::uint64_t number) {
+Status TextPlyReader<T>::check_row(const PlyElement& element, std::uint64_t number) {
   const Result<std::uint64_t> wanted = count_words(element);
   if (!wanted.ok()) return wanted.error();
   if (*wanted != row_.size()) {
@@ -140,7 +140,7 @@ Status Reader<T>::check_row(const PlyElement& element, std::uint64_t number) {
 
 // Those of a vertex are kept, so that coordinates are read once.
 template <class T>
-Status Reader<T>::check_numbers(const PlyElement& element) {
+Status TextPlyReader<T>::check_numbers(const PlyElement& element) {
   std::string_view no_number;
   if (&element == layout_.vertex) {
     vertex_.clear();
@@ -160,7 +160,7 @@ Status Reader<T>::check_numbers(const PlyElement& element) {
 
 // Number of words of an element, given its properties and the lengths of its lists.
 template <class T>
-Result<std::uint64_t> Reader<T>::count_words(const PlyElement& element) const {
+Result<std::uint64_t> TextPlyReader<T>::count_words(const PlyElement& element) const {
   std::uint64_t wanted = 0;
   for (const PlyProperty& property : element.properties) {
     if (property.length && wanted < row_.size()) {
@@ -178,7 +178,7 @@ Result<std::uint64_t> Reader<T>::count_words(const PlyElement& element) const {
 
 // Precondition: check_row() has found no fault.
 template <class T>
-Status Reader<T>::take_row(const PlyElement& element) {
+Status TextPlyReader<T>::take_row(const PlyElement& element) {
   std::size_t at = 0;
   for (const PlyProperty& property : element.properties) {
     std::size_t count = 1;
@@ -215,7 +215,7 @@ Status Reader<T>::take_row(const PlyElement& element) {
 }
 
 template <class T>
-Status Reader<T>::take_corners(Words words) {
+Status TextPlyReader<T>::take_corners(Words words) {
   corners_.clear();
   for (const std::string_view word : words) {
     const std::optional<std::uint32_t> number = read_32_bits(word);
@@ -232,7 +232,7 @@ Status read_text_ply(std::string_view text, const PlyLayout& layout, const std::
                      IndexedMesh<T>& mesh) {
   const Result<std::string_view> checked = text_of(text);
   if (!checked.ok()) return in_file(file, checked.error());
-  return Reader<T>(*checked, layout, file, mesh).read();
+  return TextPlyReader<T>(*checked, layout, file, mesh).read();
 }
 
 template Status read_text_ply(std::string_view, const PlyLayout&, const std::string&,

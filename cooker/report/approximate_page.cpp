@@ -18,13 +18,13 @@ using Row = std::vector<std::string>;
 using Steps = std::vector<ApproximateStep>;
 using ValueOf = std::function<double(const ApproximateStep&)>;
 
-struct KindWords {
+struct ApproximateWords {
   const char* title;
   const char* one;  // a query
   const char* queries;
   const char* promise;
 };
-constexpr std::array<KindWords, kApproximateKinds> kKinds = {
+constexpr std::array<ApproximateWords, kApproximateKinds> kApproximateWords = {
     {{"closest points, approximately", "a closest point",
       "Points in 1.2 times the bounds of the mesh.",
       "Nodes: this walk is depth-first, so theory promises less work for a larger error on average "
@@ -175,7 +175,7 @@ PageConclusion conclusion_of(const MeshTradeoff& mesh, const TradePoint& point, 
           fmt::format("{} takes {} instead of {} ({}), {:.1f} times less. The answers were at most "
                       "{} above the true distance, {} in the median, and {} of {} bounds were "
                       "false.",
-                      kKinds[kind].one, cost(step), cost(exact), point.name(),
+                      kApproximateWords[kind].one, cost(step), cost(exact), point.name(),
                       cost_of(mesh, exact) / std::max(cost_of(mesh, step), 1e-300),
                       share(step.error_max), share(step.error_median), step.false_bounds,
                       step.queries)};
@@ -184,7 +184,7 @@ PageConclusion conclusion_of(const MeshTradeoff& mesh, const TradePoint& point, 
 PageSection section_of(const MeshTradeoff& mesh, const std::vector<const TradePoint*>& points,
                        std::size_t kind) {
   PageSection section;
-  section.title = fmt::format("{}: {}", mesh.name, kKinds[kind].title);
+  section.title = fmt::format("{}: {}", mesh.name, kApproximateWords[kind].title);
   section.text = fmt::format(
       "{} Exact geometry. An answer is [lower, upper], and the true distance lies between them, "
       "whatever was allowed. With an allowed error E the walk ends when upper <= lower * (1 + E); "
@@ -196,7 +196,7 @@ PageSection section_of(const MeshTradeoff& mesh, const std::vector<const TradePo
       "largest may come near the bound; the median is far below it, often 0 and then not drawn: "
       "the "
       "first triangle met is often the nearest, and what costs is the proof. {}",
-      kKinds[kind].queries, kKinds[kind].promise);
+      kApproximateWords[kind].queries, kApproximateWords[kind].promise);
   for (const double error : {0.01, 0.1}) {
     for (const ApproximateStep& step : points.front()->approximate[kind].by_error) {
       if (step.relative_error == error) {

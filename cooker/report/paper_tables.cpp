@@ -162,7 +162,7 @@ PageSection whole_compression(const PaperReport& report) {
           {}};
 }
 
-PageSection counted(const PaperReport& report) {
+PageSection counted_sizes(const PaperReport& report) {
   PageTable table{{"bytes a triangle", "packed-f16", "3.2: 1, 2, 4-byte fields", "the same, f32",
                    "3.2.1: own size each", "5.3: branching 4", "branching 8",
                    "one-cut shrink nodes", "against two-cut"},
@@ -337,8 +337,8 @@ Page paper_page(const PaperReport& report) {
   page.title = "Compression of the BoxTree data structure: its tables, redrawn";
   page.text = "By the paper's builder. Made by: " + report.command;
   page.sections = {
-      implicit_indexing(report), merged_nodes(report), unique_floats(report), sizes(report),
-      whole_compression(report), counted(report),      rounding(report)};
+      implicit_indexing(report), merged_nodes(report),  unique_floats(report), sizes(report),
+      whole_compression(report), counted_sizes(report), rounding(report)};
   if (report.peers.empty()) {
     page.sections.push_back(
         {"Tables A.6 and A.7: time and cache misses against the original",

@@ -111,7 +111,7 @@ void add_quad(SourceMesh& mesh, const std::array<std::array<float, 3>, 4>& corne
 constexpr std::size_t kSteps = 64;
 constexpr float kTread = 0.125f;
 constexpr float kRise = 0.17f;  // not representable in f16
-constexpr float kWidth = 8;
+constexpr float kStairWidth = 8;
 
 SourceMesh stairs() {
   SourceMesh mesh;
@@ -121,9 +121,13 @@ SourceMesh stairs() {
     const float back = kTread * static_cast<float>(i + 1);
     const float below = kRise * static_cast<float>(i);
     const float top = kRise * static_cast<float>(i + 1);
-    add_quad(mesh,
-             {{{front, 0, below}, {front, kWidth, below}, {front, kWidth, top}, {front, 0, top}}});
-    add_quad(mesh, {{{front, 0, top}, {front, kWidth, top}, {back, kWidth, top}, {back, 0, top}}});
+    add_quad(mesh, {{{front, 0, below},
+                     {front, kStairWidth, below},
+                     {front, kStairWidth, top},
+                     {front, 0, top}}});
+    add_quad(
+        mesh,
+        {{{front, 0, top}, {front, kStairWidth, top}, {back, kStairWidth, top}, {back, 0, top}}});
   }
   return mesh;
 }
@@ -196,8 +200,8 @@ Result<std::vector<StairFigures>> stair_contact() {
       for (std::size_t i = 0; i < kSteps; ++i) {
         Pose pose = Pose::Identity();
         const float top = kRise * static_cast<float>(i + 1);
-        pose.translation() = Eigen::Vector3d(kTread * (static_cast<double>(i) + 0.5), kWidth / 2,
-                                             double{top} - depth);
+        pose.translation() = Eigen::Vector3d(kTread * (static_cast<double>(i) + 0.5),
+                                             kStairWidth / 2, double{top} - depth);
         const Result<std::uint64_t> pairs = count_pairs(*tree, *resting, pose);
         if (!pairs) return pairs.error();
         missed += *pairs == 0 ? 1u : 0u;

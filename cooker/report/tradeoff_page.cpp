@@ -55,7 +55,7 @@ double plotted_time(const MeshTradeoff& mesh, const TradePoint& point, std::size
 std::string figure(double value) {
   return value == 0 ? "0" : fmt::format("{:.2g}", value);
 }
-std::string percent(double share) {
+std::string signed_percent(double share) {
   return fmt::format("{:+.1f} %", 100 * share);
 }
 
@@ -358,9 +358,9 @@ PageSection work_section(const MeshTradeoff& mesh) {
     Row& of_leaves = leaf_table.rows.emplace_back(name);
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       of_nodes.push_back(fmt::format("{:.1f}", point.work[kind].nodes));
-      of_nodes.push_back(percent(point.extra_nodes[kind]));
+      of_nodes.push_back(signed_percent(point.extra_nodes[kind]));
       of_leaves.push_back(fmt::format("{:.2f}", point.work[kind].leaves));
-      of_leaves.push_back(percent(point.false_leaf_tests[kind]));
+      of_leaves.push_back(signed_percent(point.false_leaf_tests[kind]));
     }
   }
   section.tables = {node_table, leaf_table};

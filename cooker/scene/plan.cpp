@@ -161,26 +161,24 @@ void plan_contacts(const Profile& profile, ScenePlan& plan) {
   }
 }
 
-constexpr std::array kKinds = {Aspect::kRay, Aspect::kBox, Aspect::kPoint, Aspect::kPair};
-
 void decide_queries(const Profile& profile, ScenePlan& plan) {
   plan.queries = 0;
   for (const PlannedLayer& layer : plan.layers) {
     plan.queries = static_cast<QueryKinds>(plan.queries | layer.queries);
   }
-  for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+  for (std::size_t kind = 0; kind < kQueryAspects.size(); ++kind) {
     const auto bit = static_cast<QueryKinds>(1u << kind);
     const bool of_scene = (profile.scene.queries.value & bit) != 0;
     std::uint32_t line = profile.scene.queries.line;
     for (const PlannedLayer& layer : plan.layers) {
       if (!of_scene || (layer.queries & bit) != 0) continue;
       const ProfileObject& object = profile.objects[layer.object];
-      plan.decide(kKinds[kind], OwnerKind::kObject, layer.object, false,
+      plan.decide(kQueryAspects[kind], OwnerKind::kObject, layer.object, false,
                   "its instances do not answer them", object.needs.queries.line);
       if ((plan.queries & bit) == 0) line = object.needs.queries.line;
     }
     const bool kept = (plan.queries & bit) != 0;
-    plan.decide(kKinds[kind], OwnerKind::kFile, 0, kept,
+    plan.decide(kQueryAspects[kind], OwnerKind::kFile, 0, kept,
                 kept       ? "requested"
                 : of_scene ? "no object answers them"
                            : "the scene never answers them",

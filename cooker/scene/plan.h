@@ -4,6 +4,7 @@
 // profile gives it up explicitly.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -31,6 +32,10 @@ enum class Aspect : std::uint8_t {
   kHiddenFaces,
   kContacts,  // between the layers of the file
 };
+
+/// The aspects of the kinds of queries, in the order of QueryKinds' bits.
+inline constexpr std::array kQueryAspects = {Aspect::kRay, Aspect::kBox, Aspect::kPoint,
+                                             Aspect::kPair};
 
 /// "face ids".
 [[nodiscard]] const char* aspect_name(Aspect aspect) noexcept;

@@ -240,16 +240,15 @@ void MeshPlanner::decide_parts(std::uint32_t mesh) {
 }
 
 void MeshPlanner::decide_queries(std::uint32_t mesh) {
-  constexpr std::array kKinds = {Aspect::kRay, Aspect::kBox, Aspect::kPoint, Aspect::kPair};
   PlannedMesh& planned = plan_.meshes[mesh];
   planned.queries = 0;
   for (const Use& use : uses_[mesh]) {
     planned.queries = static_cast<QueryKinds>(planned.queries | object_of(use).needs.queries.value);
   }
-  for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+  for (std::size_t kind = 0; kind < kQueryAspects.size(); ++kind) {
     // Kinds that the whole file does not answer are decided already.
     if (((plan_.queries & ~planned.queries) >> kind & 1) == 0) continue;
-    decide(mesh, kKinds[kind], false, "no object that uses it answers them",
+    decide(mesh, kQueryAspects[kind], false, "no object that uses it answers them",
            object_of(uses_[mesh].front()).needs.queries.line);
   }
 }

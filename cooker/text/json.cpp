@@ -40,9 +40,9 @@ Library library_value(const Json& json) {
 }
 
 // Builds a document of what the library's parser meets.
-class Builder {
+class JsonBuilder {
  public:
-  Builder(ParsedJson& parsed, std::size_t deepest) : parsed_(parsed), deepest_(deepest) {}
+  JsonBuilder(ParsedJson& parsed, std::size_t deepest) : parsed_(parsed), deepest_(deepest) {}
 
   bool null() { return put(nullptr); }
   bool boolean(bool value) { return put(value); }
@@ -316,7 +316,7 @@ std::string Json::dump(int indent, bool ascii) const {
 
 ParsedJson parse_json(std::string_view text, std::size_t deepest) {
   ParsedJson parsed;
-  Builder builder(parsed, deepest);
+  JsonBuilder builder(parsed, deepest);
   Library::sax_parse(text, &builder);
   if (parsed.fault != ParsedJson::Fault::kNone) parsed.value = nullptr;
   return parsed;

@@ -16,6 +16,7 @@ version=$(sed -n 's/^project(boxtree VERSION \([0-9.]*\).*/\1/p' "$source/CMakeL
 soversion=${version%.*}
 quiet cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DBUILD_SHARED_LIBS=ON -DBOXTREE_SIMD=OFF -DBOXTREE_BUILD_COOKER=OFF \
+  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 -DBOXTREE_PRECOMPILE_HEADERS=OFF \
   -DCMAKE_INSTALL_PREFIX="$work/prefix" -DCMAKE_INSTALL_LIBDIR=lib
 quiet cmake --build "$work/build" -j2
 quiet cmake --install "$work/build"

@@ -44,6 +44,7 @@ smaller 'rays of wide4, MinSizeRel without vectors' "$work/small/program" $((60 
 # What all queries share needs none of them: each is built without the others.
 for query in 'ray;cast' 'ray;cast;collide' 'ray;cast;hull' box frustum point sphere pair distance within; do
   cmake -S "$source" -B "$work/alone" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DBOXTREE_BUILD_COOKER=OFF -DBOXTREE_BUILD_TESTS=OFF \
+    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 -DBOXTREE_PRECOMPILE_HEADERS=OFF \
     -DBOXTREE_CODECS=wide4 "-DBOXTREE_QUERIES=$query" -DBOXTREE_BLOB=OFF -DBOXTREE_SIMD=OFF >"$work/log" 2>&1 &&
     cmake --build "$work/alone" -j2 >>"$work/log" 2>&1 || { tail -30 "$work/log"; fail "$query alone does not build"; }
 done
