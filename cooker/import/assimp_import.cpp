@@ -25,12 +25,14 @@
 #include "cooker/import/f32_digits.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/flatten.h"
+#include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_extensions.h"
-#include "cooker/import/gltf_faces.h"
 #include "cooker/import/gltf_positions.h"
 #include "cooker/import/gltf_primitives.h"
+#include "cooker/import/gltf_stated_faces.h"
 #include "cooker/import/gltf_unread.h"
 #include "cooker/import/gltf_user_data.h"
+#include "cooker/import/gltf_values.h"
 #include "cooker/import/node_graph.h"
 #include "cooker/import/recording_io.h"
 #include "cooker/import/scene_intake.h"
@@ -187,8 +189,14 @@ struct GltfFacts {
 Result<GltfFacts> check_gltf(const SourceFile& source, ImportReport& report) {
   const Result<Json> document = read_gltf(source);
   if (!document.ok()) return document.error();
+  // What is no JSON to us may be some to assimp, and would be read without a check.
+  if (document->is_discarded()) {
+    const std::string fault = gltf_fault(source);
+    if (!fault.empty()) return in_file(source.title(), Error{Errc::kImportFailed, fault});
+  }
   Status status = check_required_extensions(*document);
   if (status.ok()) status = check_types(*document);
+  if (status.ok()) status = check_values(*document);
   if (!status.ok()) return in_file(source.title(), status.error());
   report.unread = unread_of_gltf(*document);
   return GltfFacts{stated_faces(*document), has_quantized_positions(*document)};

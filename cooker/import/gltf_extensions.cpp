@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_document.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -34,8 +34,8 @@ constexpr std::array<std::string_view, 9> kWithoutGeometry = {
 
 // Those that change geometry and are read.
 constexpr std::array<std::string_view, 2> kRead = {
-    "KHR_mesh_quantization",       // gltf_positions.h
-    "KHR_draco_mesh_compression",  // by assimp, which refuses it where it was built without Draco
+    "KHR_mesh_quantization",  // gltf_positions.h
+    kDraco,                   // by assimp, which refuses it where it was built without Draco
 };
 
 struct Remedy {

@@ -15,6 +15,9 @@ namespace boxtree::cooker {
 /// that are read and those that cannot change geometry. The document may hold anything.
 Status check_required_extensions(const nlohmann::json& document);
 
+/// Has the positions and indices of a primitive.
+inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
 /// Places the mesh of a node several times; it is read as placed once.
 inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 inline constexpr const char* kInstancingRemedy =

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Computes depths of JSON and of the node graph without recursion.
+// Computes depths of JSON and of the node graph without recursion, and counts members.
 #include "cooker/import/gltf_nesting.h"
 
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,13 @@ Error fault(std::string what) {
   return {Errc::kImportFailed, std::move(what)};
 }
 
-bool is_too_deep(std::string_view json) {
+struct JsonShape {
+  bool is_too_deep = false;
+  std::uint64_t members = 0;  // of all objects, if it is not too deep
+};
+
+JsonShape shape_of(std::string_view json) {
+  JsonShape shape;
   std::uint32_t depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < json.size(); ++i) {
@@ -33,12 +40,32 @@ bool is_too_deep(std::string_view json) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) return true;
+      if (++depth > kMaxJsonDepth) {
+        shape.is_too_deep = true;
+        return shape;
+      }
     } else if ((c == '}' || c == ']') && depth > 0) {
       --depth;
+    } else if (c == ':') {
+      ++shape.members;
     }
   }
-  return false;
+  return shape;
+}
+
+// Those with a name of their own.
+std::uint64_t count_members(const Json& document) {
+  std::uint64_t count = 0;
+  std::vector<const Json*> values{&document};
+  while (!values.empty()) {
+    const Json& value = *values.back();
+    values.pop_back();
+    if (value.is_object()) count += value.size();
+    for (const Json& each : value) {
+      if (each.is_structured()) values.push_back(&each);
+    }
+  }
+  return count;
 }
 
 // Children of each node. Nodes have numbers in glTF 2 and names in glTF 1. Invalid references are
@@ -133,6 +160,32 @@ struct FaultListener : nlohmann::json_sax<Json> {
   std::optional<std::size_t> at;  // bytes read, the one at fault included
 };
 
+// Up to the first name that an object has twice.
+struct DuplicateListener : FaultListener {
+  bool start_object(std::size_t) override {
+    names.emplace_back();
+    return true;
+  }
+  bool key(std::string& name) override {
+    if (names.back().insert(name).second) return true;
+    twice = name;
+    return false;
+  }
+  bool end_object() override {
+    names.pop_back();
+    return true;
+  }
+
+  std::vector<std::set<std::string>> names;  // of the objects around
+  std::string twice;
+};
+
+std::string duplicate_in(std::string_view text) {
+  DuplicateListener listener;
+  Json::sax_parse(text, &listener);
+  return listener.twice;
+}
+
 }  // namespace
 
 std::string json_fault(std::string_view text) {
@@ -142,16 +195,26 @@ std::string json_fault(std::string_view text) {
   if (*listener.at > text.size()) {
     return fmt::format("its JSON ends within a value, after {} bytes{}", text.size(), kAsIfCut);
   }
-  return fmt::format("its JSON is broken in line {}, at byte {} of {}",
+  // JSON itself is ASCII: what is wrong about other bytes, or behind one, is their encoding.
+  const std::string_view around = text.substr(before.empty() ? 0 : before.size() - 1, 2);
+  const bool is_text =
+      std::any_of(around.begin(), around.end(), [](char c) { return (c & 0x80) != 0; });
+  return fmt::format("its JSON is {} in line {}, at byte {} of {}", is_text ? "no UTF-8" : "broken",
                      std::count(before.begin(), before.end(), '\n') + 1, before.size(),
                      text.size());
 }
 
 Result<Json> parse_gltf(std::string_view text) {
-  if (is_too_deep(text)) {
+  const JsonShape shape = shape_of(text);
+  if (shape.is_too_deep) {
     return fault(fmt::format("JSON values nest more than {} deep", kMaxJsonDepth));
   }
   Json document = Json::parse(text, nullptr, false);
+  if (document.is_discarded()) return document;
+  // Of two members of a name this document has the last, and assimp's the first.
+  if (count_members(document) != shape.members) {
+    return fault(fmt::format("an object of its JSON has two members '{}'", duplicate_in(text)));
+  }
   const auto nodes = document.is_object() ? document.find("nodes") : document.end();
   if (nodes == document.end()) return document;
   const Status status = check_nodes(children_of(*nodes));

@@ -20,8 +20,8 @@ inline constexpr std::uint32_t kMaxNodeDepth = 1024;
 inline constexpr std::uint64_t kMaxRepeatedVisits = std::uint64_t{1} << 18;
 
 /// The document in `text`, glTF 1 or 2; a discarded value if it is not JSON, for the reader to
-/// refuse. kImportFailed if it nests deeper than the limits, or its nodes form a cycle. O(bytes log
-/// bytes).
+/// refuse. kImportFailed if it nests deeper than the limits, its nodes form a cycle, or an object
+/// has two members of one name. O(bytes log bytes).
 Result<nlohmann::json> parse_gltf(std::string_view text);
 
 /// What keeps `text` from being JSON, in words; empty if nothing does. O(bytes).

@@ -13,7 +13,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_accessor.h"
+#include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_primitives.h"
 
 namespace boxtree::cooker {
@@ -21,52 +22,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Values of componentType (glTF 2.0 specification, 5.1.3).
-constexpr std::uint32_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123;
-constexpr std::uint32_t kUnsignedInt = 5125, kFloat = 5126;
-
 // How the positions of a primitive are stored: its componentType, and this where it is normalized.
 constexpr std::uint32_t kNormalized = 0x10000;
-
-struct Component {
-  std::uint32_t type;
-  const char* name;
-  std::uint64_t bytes;
-};
-constexpr std::array kComponents = {
-    Component{kByte, "BYTE", 1},
-    Component{kUnsignedByte, "UNSIGNED_BYTE", 1},
-    Component{kShort, "SHORT", 2},
-    Component{kUnsignedShort, "UNSIGNED_SHORT", 2},
-    Component{kUnsignedInt, "UNSIGNED_INT", 4},
-    Component{kFloat, "FLOAT", 4},
-};
-
-const Component* component_of(const Json& accessor) {
-  const std::uint64_t type = number_at(accessor, "componentType", 0);
-  const auto found = std::find_if(kComponents.begin(), kComponents.end(),
-                                  [type](const Component& each) { return each.type == type; });
-  return found == kComponents.end() ? nullptr : &*found;
-}
-
-// The accessor of that name in `object`; null if there is none, which the reader refuses if it
-// needs one.
-const Json& accessor_at(const Json& document, const Json& object, const char* key) {
-  const Json& accessors = array_at(document, "accessors");
-  return element_at(accessors, number_at(object, key, accessors.size()));
-}
-
-const Json& positions_of(const Json& document, const Json& primitive) {
-  static const Json kNone;
-  const auto attributes = primitive.find("attributes");
-  return attributes == primitive.end() ? kNone : accessor_at(document, *attributes, "POSITION");
-}
 
 // Of a primitive without positions, that of f32, which are left alone.
 std::uint32_t storage_of(const Json& document, const Json& primitive) {
   const Json& accessor = positions_of(document, primitive);
-  const Component* const component = component_of(accessor);
-  if (component == nullptr || component->type == kFloat) return kFloat;
+  const GltfComponent* const component = component_of(accessor);
+  if (component == nullptr || component->type == GltfComponent::kFloat)
+    return GltfComponent::kFloat;
   const auto normalized = accessor.find("normalized");
   const bool is_normalized = normalized != accessor.end() && *normalized == true;
   return component->type | (is_normalized ? kNormalized : 0);
@@ -75,7 +39,7 @@ std::uint32_t storage_of(const Json& document, const Json& primitive) {
 // "VEC2 of SHORT", as the file has it.
 std::string type_of(const Json& accessor) {
   const auto type = accessor.find("type");
-  const Component* const component = component_of(accessor);
+  const GltfComponent* const component = component_of(accessor);
   return fmt::format(
       "{} of {}",
       type != accessor.end() && type->is_string() ? type->get<std::string>() : "no type",
@@ -84,16 +48,12 @@ std::string type_of(const Json& accessor) {
           : fmt::format("component type {}", number_at(accessor, "componentType", 0)).c_str());
 }
 
-bool has_type(const Json& accessor, const char* type) {
-  const auto found = accessor.find("type");
-  return found != accessor.end() && *found == type;
-}
-
 // Why positions cannot be read; empty if they can.
 std::string fault_of_positions(const Json& document, const Json& accessor) {
   if (!accessor.is_object()) return {};
-  const Component* const component = component_of(accessor);
-  if (!has_type(accessor, "VEC3") || component == nullptr || component->type == kUnsignedInt) {
+  const GltfComponent* const component = component_of(accessor);
+  if (!has_type(accessor, "VEC3") || component == nullptr ||
+      component->type == GltfComponent::kUnsignedInt) {
     return fmt::format(
         "positions are {}; expected VEC3 of FLOAT, or of 8 or 16 bits by KHR_mesh_quantization",
         type_of(accessor));
@@ -109,11 +69,8 @@ std::string fault_of_positions(const Json& document, const Json& accessor) {
 
 std::string fault_of_vertex_numbers(const Json& accessor) {
   if (!accessor.is_object()) return {};
-  const Component* const component = component_of(accessor);
-  const bool is_unsigned = component != nullptr &&
-                           (component->type == kUnsignedByte || component->type == kUnsignedShort ||
-                            component->type == kUnsignedInt);
-  if (is_unsigned && has_type(accessor, "SCALAR")) return {};
+  const GltfComponent* const component = component_of(accessor);
+  if (component != nullptr && component->is_unsigned() && has_type(accessor, "SCALAR")) return {};
   return fmt::format(
       "vertex numbers are {}; expected SCALAR of UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT",
       type_of(accessor));
@@ -144,13 +101,13 @@ void read_vertices(aiMesh& mesh, std::uint32_t storage) {
   const bool is_normalized = (storage & kNormalized) != 0;
   if (mesh.mVertices == nullptr) return;
   switch (storage & ~kNormalized) {
-    case kByte:
+    case GltfComponent::kByte:
       return read_vertices<std::int8_t>(mesh, is_normalized);
-    case kUnsignedByte:
+    case GltfComponent::kUnsignedByte:
       return read_vertices<std::uint8_t>(mesh, is_normalized);
-    case kShort:
+    case GltfComponent::kShort:
       return read_vertices<std::int16_t>(mesh, is_normalized);
-    case kUnsignedShort:
+    case GltfComponent::kUnsignedShort:
       return read_vertices<std::uint16_t>(mesh, is_normalized);
     default:
       return;
@@ -177,7 +134,7 @@ Status check_types(const Json& document) {
 bool has_quantized_positions(const Json& document) {
   bool is_any = false;
   visit_primitives(document, [&](const Json&, std::size_t, const Json& primitive, std::size_t) {
-    is_any |= storage_of(document, primitive) != kFloat;
+    is_any |= storage_of(document, primitive) != GltfComponent::kFloat;
   });
   return is_any;
 }

@@ -10,7 +10,7 @@
 
 #include <boxtree/error.h>
 
-#include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_document.h"
 
 struct aiScene;
 

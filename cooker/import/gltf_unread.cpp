@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_extensions.h"
-#include "cooker/import/gltf_faces.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_primitives.h"
 #include "cooker/import/import.h"
 #include "cooker/text/nearest_name.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Any text as the JSON of a glTF file, looked at before assimp reads it: its nesting, its counts
-// and the user data of its primitives.
+// Any text as the JSON of a glTF file, looked at before assimp reads it: its nesting, its
+// values, its counts and the user data of its primitives.
 #include "cooker/import/gltf_nesting.h"
 
 #include <string>
@@ -8,8 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_stated_faces.h"
 #include "cooker/import/gltf_user_data.h"
+#include "cooker/import/gltf_values.h"
 #include "cooker/import/import.h"
 #include "tests/fuzz/target.h"
 
@@ -40,6 +41,10 @@ void run(Bytes input) {
   const auto document = cooker::parse_gltf(text);
   if (document.ok()) {
     static_cast<void>(cooker::stated_faces(*document));
+    const Status values = cooker::check_values(*document);
+    if (!values.ok() && values.error().code != Errc::kImportFailed) {
+      finding("values with an error of another kind");
+    }
     read_user_data(*document);
   }
   const Errc code = document.ok() ? Errc::kOk : document.error().code;

@@ -44,6 +44,13 @@ TEST(GltfNesting, JsonHasADepth) {
   EXPECT_EQ(fault("{"), "");  // for the reader to refuse
 }
 
+// Assimp took the first, and what checks the document the last.
+TEST(GltfNesting, NoMemberComesTwice) {
+  EXPECT_EQ(fault(R"({"nodes":[{"mesh":0,"translation":[5,0,0],"translation":[7,0,0]}]})"),
+            "an object of its JSON has two members 'translation'");
+  EXPECT_EQ(fault(R"({"a:b":"c:d","x":{"a:b":{}},"y":[{"x":":"}],"z":[[{"x":1}]]})"), "");
+}
+
 TEST(GltfNesting, NodesHaveADepth) {
   EXPECT_EQ(fault(chain(kMaxNodeDepth, 1)), "");
   EXPECT_EQ(fault(chain(kMaxNodeDepth + 1, 1)), "node 1024: more than 1024 nodes below each other");

@@ -239,9 +239,7 @@ TEST_F(GltfTypes, SkinsWeightsAndScenesThatAreNotRead) {
   const std::vector<Unread> of_scenes = load("a.gltf", text).report.unread;
   ASSERT_EQ(of_scenes.size(), 1u);
   EXPECT_EQ(of_scenes[0].what, "other scenes");
-  const auto of_text = [](const char* json) {
-    return unread_of_gltf(nlohmann::json::parse(json));
-  };
+  const auto of_text = [](const char* json) { return unread_of_gltf(nlohmann::json::parse(json)); };
   const std::vector<Unread> skins = of_text(R"({"nodes":[{"mesh":0,"skin":0},{"skin":0},7]})");
   ASSERT_EQ(skins.size(), 1u);
   EXPECT_EQ(skins[0].what, "skins");
@@ -264,7 +262,7 @@ TEST_F(GltfTypes, DocumentsOfAnyShape) {
   document.more.clear();
   document.node = "7";
   static_cast<void>(import_mesh(write("a.gltf", document.text())));
-  for (const char* type : {R"("componentType":[],"type":7,)", R"("componentType":5122.5,)"}) {
+  for (const char* type : {R"("componentType":[],)", R"("componentType":5122.5,)"}) {
     std::string text = document.text();
     text.replace(text.find(R"("componentType":5126)"), 20, std::string(type) + R"("x":0)");
     EXPECT_TRUE(has(fail("a.gltf", text).detail, "positions are "));

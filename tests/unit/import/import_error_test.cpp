@@ -303,10 +303,11 @@ TEST_F(ImportErrorTest, CountsOfPlyThatCannotBe) {
 
 // Assimp drops faces with bad vertex numbers from glTF files: here one of two.
 TEST_F(ImportErrorTest, GltfFacesThatAssimpDropsAreMissed) {
-  const auto gltf = [](const std::string& indices) {
+  const auto gltf = [](const std::string& indices, const std::string& other = "") {
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
-           R"("meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
-           R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
+           R"("meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0},"indices":1}]})" +
+           other +
+           R"(],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
            R"("min":[0,0,0],"max":[1,1,0]},)"
            R"({"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}],)"
            R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":1,"byteLength":6}],)"
@@ -319,6 +320,10 @@ TEST_F(ImportErrorTest, GltfFacesThatAssimpDropsAreMissed) {
   const Error error = fail("bad.gltf", gltf("AAECAAIJ"));                  // 0 1 2  0 2 9
   EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange);
   EXPECT_TRUE(has(error.detail, "tri"));
+  // What is left is what another mesh states, which no node has.
+  const Error hidden =
+      fail("hidden.gltf", gltf("AAECAAIJ", R"(,{"primitives":[{"attributes":{"POSITION":0}}]})"));
+  EXPECT_EQ(hidden.code, Errc::kMeshIndexOutOfRange);
 }
 
 }  // namespace

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// How the numbers of an accessor of glTF 2 are stored (specification, 3.6.2 and 5.1).
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace boxtree::cooker {
+
+/// A value of componentType.
+struct GltfComponent {
+  static constexpr std::uint32_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122,
+                                 kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+
+  std::uint32_t type;
+  const char* name;
+  std::uint64_t bytes;
+
+  /// Whether numbers of vertices may be stored so.
+  [[nodiscard]] bool is_unsigned() const noexcept;
+};
+
+/// Of an accessor or another object with a componentType; null if that is none.
+[[nodiscard]] const GltfComponent* component_of(const nlohmann::json& accessor);
+
+/// Whether its type is that: "VEC3", "SCALAR".
+[[nodiscard]] bool has_type(const nlohmann::json& accessor, const char* type);
+
+/// The accessor that `object` names by `key`; null if there is none.
+[[nodiscard]] const nlohmann::json& accessor_at(const nlohmann::json& document,
+                                                const nlohmann::json& object, const char* key);
+
+/// That of the positions of a primitive.
+[[nodiscard]] const nlohmann::json& positions_of(const nlohmann::json& document,
+                                                 const nlohmann::json& primitive);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Detects faces that assimp's glTF reader drops without an error: those with a vertex number out of
+// range.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <boxtree/error.h>
+
+#include "cooker/import/gltf_primitives.h"
+
+struct aiScene;
+
+namespace boxtree::cooker {
+
+/// What a document states of its primitives.
+struct StatedFaces {
+  /// Numbers of vertices and faces, of each primitive of each mesh in turn.
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> counts;
+  PrimitiveNumbers numbers;  ///< each primitive's place in `counts`
+  nlohmann::json nodes;      ///< a document with what numbers_of_meshes() looks at
+};
+
+/// Of a glTF document, which may hold anything. No counts for glTF 1, whose reader keeps bad
+/// numbers for later checks, and for other formats. O(its size).
+[[nodiscard]] StatedFaces stated_faces(const nlohmann::json& document);
+
+/// kMeshIndexOutOfRange with the mesh if a scene's counts differ from `stated`.
+Status check_stated_faces(const StatedFaces& stated, const aiScene& scene);
+
+}  // namespace boxtree::cooker
