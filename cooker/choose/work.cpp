@@ -52,7 +52,10 @@ struct Listening : Query {
 template <class Query>
 Listening(Query, Counts*) -> Listening<Query>;
 
+// Triangles are left out: whether those of two leaves touch changes no count, and where they lie on
+// one line or plane each pair of them takes exact arithmetic.
 struct LeafPairCounter {
+  static constexpr bool kCountsLeafPairs = true;
   Counts* counts;
 
   void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}

@@ -21,6 +21,7 @@ struct NoPairObserver {
   void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
   /// The triangles of two leaves are about to be compared.
   void leaf_pair(NodeRef, NodeRef) noexcept {}
+  // If it has a member kCountsLeafPairs, that is all: their triangles are neither read nor compared.
   // If it has members `bool stops(first_box, second_box)` and `bool stops(triangle, moved)`, the
   // walk calls them to see whether to end: the first before either of the above; the second with
   // each triangle of the first leaf and of the second, moved into the first one's space, that do
@@ -205,6 +206,7 @@ class PairWalk {
     error_ = bound_.compare(entry.first, entry.second);
     if (error_ != Errc::kOk) return;
     observer_.leaf_pair(entry.first, entry.second);
+    if constexpr (requires { Observer::kCountsLeafPairs; }) return;
     const LeafPair leaves{box_cast<double>(entry.first_box), box_cast<double>(entry.second_box),
                           entry.first, entry.second};
     if constexpr (requires(const Triangle& t) { observer_.stops(t, t); }) {
