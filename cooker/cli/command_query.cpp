@@ -61,7 +61,7 @@ void print_answer(const QueryArguments& arguments, const Json& json) {
 // The lines of a batch. Not a stream of C++: those take a read error of standard input for its end.
 class BatchLines {
  public:
-  // Far beyond any query; an endless line would fill the memory.
+  // Far beyond any query; longer lines are not kept.
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 
   explicit BatchLines(const std::filesystem::path& path)
@@ -77,15 +77,16 @@ class BatchLines {
   // The next line, without its end; false after the last one and after an error.
   bool next(std::string& line) {
     line.clear();
+    is_too_long_ = false;
     if (file_ == nullptr) return false;
     ++number_;
     int c = 0;
     while ((c = std::getc(file_)) != EOF && c != '\n') {
-      if (line.size() == kLongestLine) {
+      if (line.size() < kLongestLine) {
+        line += static_cast<char>(c);
+      } else {
         is_too_long_ = true;
-        return false;
       }
-      line += static_cast<char>(c);
     }
     if (c == EOF && std::ferror(file_) != 0) {
       error_ = errno;
@@ -101,13 +102,14 @@ class BatchLines {
   }
   [[nodiscard]] std::size_t number() const { return number_; }
   [[nodiscard]] std::string name() const { return input_name(path_); }
+  /// Why the last line cannot be a query.
+  [[nodiscard]] Status check_line() const {
+    if (!is_too_long_) return {};
+    return Error{Errc::kInvalidQuery, fmt::format("it has more than {} bytes", kLongestLine)};
+  }
 
   // Why there is no next line, unless the file simply ended.
   [[nodiscard]] Status status() const {
-    if (is_too_long_) {
-      return Error{Errc::kInvalidQuery, fmt::format("{}: line {} has more than {} bytes", name(),
-                                                    number_, kLongestLine)};
-    }
     if (error_ == 0) return {};
     return input_failure(name(), error_);
   }
@@ -137,7 +139,9 @@ int run_batch(const QueryArguments& arguments, const AnswerRequest& answer_reque
   while (lines.next(line)) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     ++queries;
-    const Result<BatchRequest> request = parse_request(line, defaults);
+    const Status length = lines.check_line();
+    const Result<BatchRequest> request =
+        length.ok() ? parse_request(line, defaults) : Result<BatchRequest>(length.error());
     Result<Json> answer =
         request ? answer_request(*request, others) : Result<Json>(request.error());
     if (!answer) {

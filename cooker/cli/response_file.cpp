@@ -6,6 +6,7 @@
 #include "cooker/import/text_tokens.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/system/path.h"
+#include "cooker/text/utf8.h"
 
 namespace boxtree::cooker {
 
@@ -21,7 +22,9 @@ Result<std::vector<std::string>> with_response_files(const std::vector<std::stri
       return Error{text.code(),
                    word + ": a word with @ names a list of arguments: " + text.error().detail};
     }
-    for (std::string_view rest = *text; !rest.empty();) {
+    std::string_view rest = *text;
+    if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
+    while (!rest.empty()) {
       const std::string_view line = take_line(rest);
       if (!line.empty()) all.emplace_back(line);
     }

@@ -214,7 +214,8 @@ class ValueChecker {
 
   // Of `elements` of `size` bytes in a bufferView, which has to be in its buffer.
   bool check_range(const Json& object, std::uint64_t elements, std::uint64_t size) {
-    if (member(object, "bufferView") == nullptr) return fail("bufferView", "one", "none");
+    if (member(object, "bufferView") == nullptr)
+      return fail("bufferView", "one, without which all are zeros", "none");
     if (!(index(object, "bufferView", "bufferViews") && count(object, "byteOffset", 0, false)))
       return false;
     const std::string of_object = place_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "cooker/text/utf8.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -54,7 +56,6 @@ bool ObjStatement::is_element() const {
 }
 
 std::string_view statements_of(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   if (text.ends_with('\x1a')) text.remove_suffix(1);  // end of text in DOS
   return text;

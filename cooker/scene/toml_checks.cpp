@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "cooker/text/utf8.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -23,8 +25,6 @@ class Scan {
   }
 
  private:
-  static constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-
   void step() {
     const char c = text_[at_++];
     switch (c) {

@@ -12,6 +12,9 @@ namespace boxtree::cooker {
 /// text is empty.
 [[nodiscard]] std::size_t character_bytes(std::string_view text);
 
+/// What some programs for Windows write before a text.
+inline constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
 [[nodiscard]] bool is_utf8(std::string_view text);
 
 /// The text with U+FFFD in place of each byte that is not UTF-8; at most `most` bytes, cut between

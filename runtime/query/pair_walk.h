@@ -21,11 +21,11 @@ struct NoPairObserver {
   void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
   /// The triangles of two leaves are about to be compared.
   void leaf_pair(NodeRef, NodeRef) noexcept {}
-  // If it has a member kCountsLeafPairs, that is all: their triangles are neither read nor compared.
-  // If it has members `bool stops(first_box, second_box)` and `bool stops(triangle, moved)`, the
-  // walk calls them to see whether to end: the first before either of the above; the second with
-  // each triangle of the first leaf and of the second, moved into the first one's space, that do
-  // not touch.
+  // If it has a member kCountsLeafPairs, that is all: their triangles are neither read nor
+  // compared. If it has members `bool stops(first_box, second_box)` and `bool stops(triangle,
+  // moved)`, the walk calls them to see whether to end: the first before either of the above; the
+  // second with each triangle of the first leaf and of the second, moved into the first one's
+  // space, that do not touch.
 };
 
 /// The children of one side of a pair: those of a node, or the leaf itself.

@@ -181,9 +181,12 @@ VisitResult visit_sphere(const Scene& queried, const Sphere& sphere, SceneFaceVi
   const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(sphere.center);
-  const double length = scene.to_units(sphere.radius);
   if (!is_within_range(at)) return {Errc::kInvalidQuery, "center"};
-  if (!(length >= 0) || !(length <= kMaxCoordinate)) return {Errc::kInvalidQuery, "radius"};
+  if (!(sphere.radius >= 0) || !std::isfinite(sphere.radius)) {
+    return {Errc::kInvalidQuery, "radius"};
+  }
+  // As for a tree, a larger radius changes no answer.
+  const double length = std::min(scene.to_units(sphere.radius), 4 * kMaxCoordinate);
   const SphereInUnits shape{at, length, scene.to_frame(at),
                             frame_bound(length, frame_error(scene, largest_magnitude(at)))};
   return query_scene(scene, shape, visitor, layers, limits);

@@ -1040,6 +1040,11 @@ expect 1 sh -c "'$boxtree' query cube.bxt --batch - <keys.jsonl"
 grep -q '^boxtree: invalid_query: standard input: 1 of 3 queries have no answer; ' err
 expect 1 "$boxtree" query cube.bxt --batch keys.jsonl --json
 same "$(jq -c '.answers | map(.line)' out)" '[1,3,4]'
+# A line that is too long is one without an answer, and those after it have theirs.
+{ head -c 1100000 /dev/zero | tr '\0' x; printf '\n%s\n' '{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1]}'; } >long.jsonl
+expect 1 "$boxtree" query cube.bxt --batch long.jsonl
+same "$(jq -cs 'map([.line, .hit, .error])' out)" '[[1,null,"invalid_query"],[2,true,null]]'
+same "$(cat err)" "boxtree: invalid_query: long.jsonl: 1 of 2 queries have no answer; the first: line 1: it has more than 1048576 bytes"
 for pose in '[1,2]' '"1,2"' '[1,2,"3"]' 3; do
   names "pair: \"pose\": expected X,Y,Z or 12 numbers, as an array or as text, found $pose" \
     "{\"kind\":\"pair\",\"file\":\"cube.bxt\",\"pose\":$pose}"

@@ -85,6 +85,21 @@ TEST(CountWork, EndsWhereAllFacesLieOnTopOfEachOther) {
   }
 }
 
+// Found by a tester: pairs of triangles on one line, each by exact arithmetic, took minutes.
+TEST(CountWork, ComparesNoTrianglesOfLeaves) {
+  SourceMesh mesh;
+  constexpr std::uint32_t kFaces = 2000;
+  for (std::uint32_t i = 0; i < kFaces + 2; ++i) {
+    const auto along = static_cast<float>(i * i % 97);
+    mesh.positions.f32.insert(mesh.positions.f32.end(), {along, 2 * along, 3 * along});
+    if (i >= 2) mesh.faces.push_back({{0, i - 1, i, kNoCorner}});
+  }
+  const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide8));
+  const Tree tree = require(bind_encoded(encoded));
+  const WorkOfKinds work = require(count_work(tree, choice_queries(bounds_of(mesh))));
+  EXPECT_GT(work[static_cast<std::size_t>(QueryKind::kPair)].leaves, kFaces);
+}
+
 TEST(CountWork, ATreeWithoutFacesHasNone) {
   const EncodedTree encoded = require(cook_as(SourceMesh(), CodecId::kWide8));
   const Tree tree = require(bind_encoded(encoded));

@@ -49,7 +49,8 @@ TEST(GltfValues, TheSpecificationsArePassed) {
   EXPECT_EQ(fault("/meshes/0/primitives/0/mode", "6"), "");
   Json compressed = document();
   for (Json& accessor : compressed["accessors"]) accessor.erase("bufferView");
-  EXPECT_EQ(fault(compressed), "accessor 0: bufferView: expected one, found none");
+  EXPECT_EQ(fault(compressed),
+            "accessor 0: bufferView: expected one, without which all are zeros, found none");
   compressed["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {};
   EXPECT_EQ(fault(compressed), "");
   // glTF 1, and what is no document of glTF at all.
@@ -165,7 +166,9 @@ TEST(GltfValues, SparseAccessorsHaveTheirBytes) {
   EXPECT_EQ(sparse("2", R"({"bufferView":1,"componentType":5126})", R"({"bufferView":0})"),
             "accessor 0, sparse: componentType of indices: expected UNSIGNED_BYTE, UNSIGNED_SHORT "
             "or UNSIGNED_INT, found FLOAT");
-  EXPECT_EQ(sparse("2", indices, "{}"), "accessor 0, sparse: bufferView: expected one, found none");
+  EXPECT_EQ(
+      sparse("2", indices, "{}"),
+      "accessor 0, sparse: bufferView: expected one, without which all are zeros, found none");
   EXPECT_EQ(sparse("2", indices, R"({"bufferView":0,"byteOffset":33})"),
             "accessor 0, sparse: count: expected no more than the 44 bytes of bufferView 0 hold "
             "from byte 33 on, found 2");
