@@ -61,8 +61,9 @@ void print_answer(const QueryArguments& arguments, const Json& json) {
 // The lines of a batch. Not a stream of C++: those take a read error of standard input for its end.
 class BatchLines {
  public:
-  // Far beyond any query; longer lines are not kept.
+  // Far beyond any query; longer lines are not kept. One that is longer still may have no end.
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
+  static constexpr std::size_t kEndlessLine = std::size_t{1} << 26;
 
   explicit BatchLines(const std::filesystem::path& path)
       : path_(path), file_(is_standard_stream(path) ? stdin : open_to_read(path).release()) {
@@ -77,16 +78,13 @@ class BatchLines {
   // The next line, without its end; false after the last one and after an error.
   bool next(std::string& line) {
     line.clear();
-    is_too_long_ = false;
+    bytes_ = 0;
     if (file_ == nullptr) return false;
     ++number_;
     int c = 0;
     while ((c = std::getc(file_)) != EOF && c != '\n') {
-      if (line.size() < kLongestLine) {
-        line += static_cast<char>(c);
-      } else {
-        is_too_long_ = true;
-      }
+      if (++bytes_ > kEndlessLine) return false;
+      if (bytes_ <= kLongestLine) line += static_cast<char>(c);
     }
     if (c == EOF && std::ferror(file_) != 0) {
       error_ = errno;
@@ -104,12 +102,16 @@ class BatchLines {
   [[nodiscard]] std::string name() const { return input_name(path_); }
   /// Why the last line cannot be a query.
   [[nodiscard]] Status check_line() const {
-    if (!is_too_long_) return {};
+    if (bytes_ <= kLongestLine) return {};
     return Error{Errc::kInvalidQuery, fmt::format("it has more than {} bytes", kLongestLine)};
   }
 
   // Why there is no next line, unless the file simply ended.
   [[nodiscard]] Status status() const {
+    if (bytes_ > kEndlessLine) {
+      return Error{Errc::kInvalidQuery, fmt::format("{}: line {} has more than {} bytes", name(),
+                                                    number_, kEndlessLine)};
+    }
     if (error_ == 0) return {};
     return input_failure(name(), error_);
   }
@@ -118,8 +120,8 @@ class BatchLines {
   const std::filesystem::path path_;
   std::FILE* file_;
   std::size_t number_ = 0;
-  int error_ = 0;  // of the system
-  bool is_too_long_ = false;
+  int error_ = 0;          // of the system
+  std::size_t bytes_ = 0;  // of the last line
 };
 
 // Answers each line of the batch: JSON lines as they come, at once where lines come from a program,
