@@ -182,6 +182,9 @@ class ValueChecker {
     const Json& accessor = accessors[number];
     place_ = fmt::format("accessor {}", number);
     if (!(is_object(accessor) && count(accessor, "count", 1, true))) return false;
+    if (!accessor.contains("bufferView")) {
+      return fail("bufferView", "one, without which all are zeros", "none");
+    }
     const GltfComponent* const component = component_of(accessor);
     if (component == nullptr) return true;  // see check_types
     const std::uint64_t size = components * component->bytes;
@@ -214,8 +217,7 @@ class ValueChecker {
 
   // Of `elements` of `size` bytes in a bufferView, which has to be in its buffer.
   bool check_range(const Json& object, std::uint64_t elements, std::uint64_t size) {
-    if (member(object, "bufferView") == nullptr)
-      return fail("bufferView", "one, without which all are zeros", "none");
+    if (member(object, "bufferView") == nullptr) return fail("bufferView", "one", "none");
     if (!(index(object, "bufferView", "bufferViews") && count(object, "byteOffset", 0, false)))
       return false;
     const std::string of_object = place_;
