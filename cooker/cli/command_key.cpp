@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -88,38 +89,41 @@ Result<JobKey> key_at(const ManifestJobs& jobs, std::size_t i) {
 // The keys of a part of a manifest, side by side.
 class Keys {
  public:
-  Keys(const ManifestJobs& jobs, std::size_t first, std::size_t end) : first_(first) {
-    results_.resize(end - first);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, end, 1), [&](const auto& part) {
-      for (std::size_t i = part.begin(); i < part.end(); ++i) results_[i - first] = key_at(jobs, i);
+  Keys(const ManifestJobs& jobs, std::span<const std::size_t> of) {
+    results_.resize(of.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, of.size(), 1), [&](const auto& part) {
+      for (std::size_t i = part.begin(); i < part.end(); ++i) results_[i] = key_at(jobs, of[i]);
     });
   }
-  const Result<JobKey>& operator[](std::size_t i) const { return *results_[i - first_]; }
+  const Result<JobKey>& operator[](std::size_t i) const { return *results_[i]; }
 
  private:
-  std::size_t first_;
   std::vector<std::optional<Result<JobKey>>> results_;
 };
 
 int keys_of_manifest(const KeyArguments& arguments) {
   const Result<ManifestJobs> jobs = ManifestJobs::read(arguments.farm.manifest);
   if (!jobs) return fail(jobs.error());
+  // Was checked when it was parsed.
+  const std::vector<std::size_t> ours = jobs->of_shard(*shard_from(arguments.farm.shard));
   constexpr std::size_t kPart = 256;  // so that what waits to be printed stays small
   int status = 0;
   Json documents = Json::array();
   run_on_threads(kAllThreads, [&] {
-    for (std::size_t first = 0; first < jobs->size(); first += kPart) {
-      const std::size_t end = std::min(first + kPart, jobs->size());
-      const Keys keys(*jobs, first, end);
-      for (std::size_t i = first; i < end; ++i) {
+    for (std::size_t first = 0; first < ours.size(); first += kPart) {
+      const std::span<const std::size_t> part =
+          std::span(ours).subspan(first, std::min(kPart, ours.size() - first));
+      const Keys keys(*jobs, part);
+      for (std::size_t i = 0; i < part.size(); ++i) {
         const Result<JobKey>& key = keys[i];
+        const std::size_t job = part[i];
         if (!key) {
-          const int failed = fail(in_file(jobs->place(i), key.error()));
+          const int failed = fail(in_file(jobs->place(job), key.error()));
           if (status == 0) status = failed;
         } else if (arguments.json) {
-          documents.push_back(key_json(jobs->job(i), *key));
+          documents.push_back(key_json(jobs->job(job), *key));
         } else {
-          print_line(jobs->job(i), *key);
+          print_line(jobs->job(job), *key);
         }
       }
     }
@@ -140,6 +144,7 @@ void add_key_command(Command& program, int& status) {
       "reads, with tabs between them. Equal keys: equal outputs.");
   declare_cook_options(command, arguments->cook);
   declare_manifest(command, arguments->farm);
+  declare_shard(command, arguments->farm);
   Option* const manifest = arguments->farm.manifest_option;
   Option* inputs = command.add_flag("--inputs", arguments->inputs,
                                     "Print the files that the cook reads alone, one a line");

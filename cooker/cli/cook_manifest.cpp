@@ -124,16 +124,12 @@ class Counts {
 class Run {
  public:
   Run(const ManifestRun& run, const ManifestJobs& jobs, const Shard& shard, Journal* journal)
-      : run_(run), jobs_(jobs), steps_(!run.quiet) {
+      : run_(run), jobs_(jobs), ours_(jobs.of_shard(shard)), steps_(!run.quiet) {
     stores_.cache = run.cache;
     stores_.journal = journal;
     stores_.trusts_states = !run.farm.reread;
     stores_.audit_share = run.farm.audit;
     stores_.report = keyed_report;
-    for (std::size_t job = 0; job < jobs.size(); ++job) {
-      const Digest digest = sha256_of(jobs.line(job).output.string());
-      if (shard_of(digest, shard.count) == shard.number) ours_.push_back(job);
-    }
   }
 
   int work() {

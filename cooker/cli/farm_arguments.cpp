@@ -34,16 +34,20 @@ void declare_manifest(Command& command, FarmArguments& arguments) {
       "\"options\": [\"--exact\"]}, or \"profile\" in place of inputs");
 }
 
-void declare_farm_options(Command& command, FarmArguments& arguments) {
-  Option* const manifest = arguments.manifest_option;
+void declare_shard(Command& command, FarmArguments& arguments) {
   command
       .add_option(
           "--shard", arguments.shard,
           "Only the jobs of a manifest whose outputs fall to shard I of N, from 0: N such runs "
-          "cook each job once")
+          "take each job once")
       ->type_name("I/N")
       ->check(shard_fault)
-      ->needs(manifest);
+      ->needs(arguments.manifest_option);
+}
+
+void declare_farm_options(Command& command, FarmArguments& arguments) {
+  Option* const manifest = arguments.manifest_option;
+  declare_shard(command, arguments);
   command
       .add_option(
           "--memory", arguments.memory,

@@ -31,7 +31,9 @@ struct FarmArguments {
 
 /// Adds --manifest.
 void declare_manifest(Command& command, FarmArguments& arguments);
-/// Adds the options of cooks by their keys.
+/// Adds --shard, of that manifest.
+void declare_shard(Command& command, FarmArguments& arguments);
+/// Adds the options of cooks by their keys, --shard among them.
 void declare_farm_options(Command& command, FarmArguments& arguments);
 
 /// "1/8"; nothing if the text is none.

@@ -8,6 +8,7 @@
 #include "cooker/cli/job_words.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
+#include "cooker/farm/sha256.h"
 #include "cooker/import/whole_file.h"
 
 namespace boxtree::cooker {
@@ -57,6 +58,15 @@ Result<ManifestJobs> ManifestJobs::read(const std::filesystem::path& manifest) {
 
 std::string ManifestJobs::place(std::size_t i) const {
   return fmt::format("{}:{}", name_, lines_[i].line);
+}
+
+std::vector<std::size_t> ManifestJobs::of_shard(const Shard& shard) const {
+  std::vector<std::size_t> ours;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const Digest digest = sha256_of(lines_[i].output.string());
+    if (shard_of(digest, shard.count) == shard.number) ours.push_back(i);
+  }
+  return ours;
 }
 
 CookJob ManifestJobs::job(std::size_t i) const {

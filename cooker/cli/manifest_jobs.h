@@ -12,6 +12,7 @@
 #include <boxtree/error.h>
 
 #include "cooker/farm/manifest.h"
+#include "cooker/farm/shard.h"
 #include "cooker/shell/cook_job.h"
 
 namespace boxtree::cooker {
@@ -27,6 +28,8 @@ class ManifestJobs {
   /// Where the job is, "jobs.jsonl:3".
   [[nodiscard]] std::string place(std::size_t i) const;
   [[nodiscard]] CookJob job(std::size_t i) const;
+  /// Numbers of the jobs of a shard, by the names of their outputs: see shard_of().
+  [[nodiscard]] std::vector<std::size_t> of_shard(const Shard& shard) const;
 
  private:
   // Whether there is a profile, and the options.

@@ -20,6 +20,10 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
+bool has_disturbed_times(const MeshTradeoff& mesh) {
+  return mesh.timed && is_disturbed(mesh.timed_work.processor_share());
+}
+
 // The point of wide8 with arrays; null if there is none.
 const TradePoint* baseline_of(const MeshTradeoff& mesh) {
   const auto found =
@@ -149,12 +153,16 @@ double mean_time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size
 
 std::vector<double> slowdowns_of(const MeshTradeoff& mesh) {
   const TradePoint* const baseline = baseline_of(mesh);
+  const bool is_by_work = !mesh.timed || has_disturbed_times(mesh);
+  const auto time_of = [&](const TradePoint& point, std::size_t kind) {
+    return is_by_work ? point.modelled[kind] : point.times[kind].mean_ns;
+  };
   std::vector<double> slower;
   for (const TradePoint& point : mesh.points) {
     double sum = 0;
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-      const double time = mean_time_of(mesh, point, kind);
-      const double base = baseline == nullptr ? 0 : mean_time_of(mesh, *baseline, kind);
+      const double time = time_of(point, kind);
+      const double base = baseline == nullptr ? 0 : time_of(*baseline, kind);
       sum += time > 0 && base > 0 ? time / base : 1;  // else below the clock's resolution
     }
     slower.push_back(sum / kQueryKinds);
@@ -297,13 +305,12 @@ std::string time_in_words(double nanoseconds) {
 }
 
 std::string disturbance_in_words(const MeshTradeoff& mesh) {
-  const double share = mesh.timed_work.processor_share();
-  if (!mesh.timed || !is_disturbed(share)) return {};
+  if (!has_disturbed_times(mesh)) return {};
   return fmt::format(
       "other programs had the processor for {:.0f} % of the time in which queries were timed, so "
-      "times, and encodings that are recommended by them, may be wrong. Measure again when the "
-      "machine does nothing else, or without times (--no-times)",
-      100 * (1 - share));
+      "times may be wrong; slowdowns, and what is recommended by them, are by counted work, as "
+      "with --no-times. Measure again when the machine does nothing else",
+      100 * (1 - mesh.timed_work.processor_share()));
 }
 
 std::string move_in_words(const MeshTradeoff& mesh, double share) {

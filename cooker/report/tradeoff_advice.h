@@ -35,7 +35,8 @@ struct Advice {
 [[nodiscard]] const char* contacts_name(const MeshTradeoff& mesh);
 
 /// The time of each point relative to that of wide8 with arrays: the mean over the kinds of queries
-/// of the ratio of both mean times, as slowdowns() has it. 1 where either has no time.
+/// of the ratio of both mean times, as slowdowns() has it; of modelled ones where there are no
+/// others or other programs disturbed them. 1 where either has no time.
 [[nodiscard]] std::vector<double> slowdowns_of(const MeshTradeoff& mesh);
 
 /// Which points may be recommended: those that pass their gates, that boxtree::runtime alone reads

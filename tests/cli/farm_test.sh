@@ -134,6 +134,8 @@ for shards in 2 5; do
 import hashlib, sys
 sys.exit(any(int(hashlib.sha256(name.strip().encode()).hexdigest()[:16], 16) % $shards != $i for name in sys.stdin))"
     jq -r '"'"$i"' " + .output' out.jsonl >>shards.$shards
+    "$boxtree" key --manifest jobs.jsonl --shard "$i/$shards" | cut -f2 | sort >outputs
+    jq -r .output out.jsonl | sort | cmp - outputs
   done
   same "$(wc -l <all.jsonl)" $jobs
   same_as_single
@@ -186,8 +188,8 @@ echo "{\"inputs\":[\"in/m1.obj\"],\"output\":\"cooked/$(printf 'x%.0s' $(seq 300
 expect 3 "$boxtree" cook --manifest long.jsonl --json
 same "$(jq -c '[.error.name, .error.status, .error.may_pass]' out)" '["write_failed",2,false]'
 # Found by a newcomer: the word behind an unknown option was told to be a mesh, which excludes --manifest.
-expect 1 "$boxtree" key --manifest bad.jsonl --shard 0/3
-same "$(head -1 err)" "boxtree: usage: key: '--shard' is no option of key, but of cook"
+expect 1 "$boxtree" key --manifest bad.jsonl --memory 1G
+same "$(head -1 err)" "boxtree: usage: key: '--memory' is no option of key, but of cook"
 expect 1 "$boxtree" cook --manifest bad.jsonl --cahce x
 same "$(head -1 err)" "boxtree: usage: cook: '--cahce' is no option; did you mean '--cache'?"
 # Found by a newcomer: names of something else are retried for ever.

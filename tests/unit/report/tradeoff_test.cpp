@@ -480,6 +480,19 @@ TEST(Advice, SlowdownsAreRelativeToWide8WithArrays) {
   EXPECT_EQ(slowdowns_of(made)[1], (0.5 + 3 * 1.5) / 4);
 }
 
+// Found by a newcomer: on a busy machine the page advised wide4, which took longer than wide8.
+TEST(Advice, DisturbedTimesDecideNothing) {
+  MeshTradeoff made = three_points();
+  for (TradePoint& point : made.points) point.modelled = {100, 100, 100, 100};
+  made.points[4].modelled = {300, 300, 300, 300};
+  for (KindTimes& times : made.points[1].times) times = {50, 100, 50};
+  EXPECT_EQ(slowdowns_of(made), (std::vector<double>{1, 0.5, 2, 2, 1.2}));
+  EXPECT_EQ(advise(made)->fastest_exact, 1u);
+  made.timed_work = {4, 10};
+  EXPECT_EQ(slowdowns_of(made), (std::vector<double>{1, 1, 1, 1, 3}));
+  EXPECT_EQ(advise(made)->fastest_exact, 0u);
+}
+
 // Without times, the page's slowdowns are the numbers that `cook --candidates` prints.
 TEST(Advice, SlowdownsByCountedWorkAreThoseOfCook) {
   CookOptions options;
