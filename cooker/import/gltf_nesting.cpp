@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Computes depths of JSON and of the node graph without recursion, and counts members.
+// Computes the depth of JSON without recursion, and counts members.
 #include "cooker/import/gltf_nesting.h"
 
 #include <algorithm>
@@ -70,16 +70,14 @@ std::uint64_t count_members(const Json& document) {
 
 // Children of each node. Nodes have numbers in glTF 2 and names in glTF 1. Invalid references are
 // left to the reader to refuse.
-using Children = std::vector<std::vector<std::uint32_t>>;
-
-Children children_of(const Json& nodes) {
+NodeChildren children_of(const Json& nodes) {
   std::map<std::string, std::uint32_t> numbers;
   if (nodes.is_object()) {
     for (const auto& [name, node] : nodes.items()) {
       numbers.emplace(name, static_cast<std::uint32_t>(numbers.size()));
     }
   }
-  Children children(nodes.size());
+  NodeChildren children(nodes.size());
   std::uint32_t number = 0;
   for (const Json& node : nodes) {
     std::vector<std::uint32_t>& of_node = children[number++];
@@ -95,46 +93,6 @@ Children children_of(const Json& nodes) {
     }
   }
   return children;
-}
-
-// Visits parents before children (Kahn, "Topological sorting of large networks", 1962). The nodes
-// of a cycle are never reached.
-Status check_nodes(const Children& children) {
-  std::vector<std::uint32_t> parents(children.size(), 0), depth(children.size(), 1);
-  std::vector<std::uint64_t> visits(children.size(), 0);
-  for (const auto& of_node : children) {
-    for (const std::uint32_t child : of_node) ++parents[child];
-  }
-  std::vector<std::uint32_t> free;
-  for (std::uint32_t node = 0; node < children.size(); ++node) {
-    if (parents[node] > 0) continue;
-    free.push_back(node);
-    visits[node] = 1;
-  }
-  const std::uint64_t most = children.size() + kMaxRepeatedVisits;
-  std::uint64_t all_visits = 0;
-  for (std::size_t next = 0; next < free.size(); ++next) {
-    const std::uint32_t node = free[next];
-    all_visits += visits[node];
-    if (depth[node] > kMaxNodeDepth) {
-      return fault(
-          fmt::format("node {}: more than {} nodes below each other", node, kMaxNodeDepth));
-    }
-    if (all_visits > most) {
-      return fault(
-          fmt::format("node {}: shared by so many parents that more than {} instances "
-                      "arise",
-                      node, most));
-    }
-    for (const std::uint32_t child : children[node]) {
-      visits[child] = std::min(visits[child] + visits[node], most + 1);
-      depth[child] = std::max(depth[child], depth[node] + 1);
-      if (--parents[child] == 0) free.push_back(child);
-    }
-  }
-  if (free.size() == children.size()) return {};
-  const auto cyclic = std::find_if(parents.begin(), parents.end(), [](auto n) { return n > 0; });
-  return fault(fmt::format("node {}: it is below itself", cyclic - parents.begin()));
 }
 
 // Values without effect, up to the first fault.
@@ -217,8 +175,8 @@ Result<Json> parse_gltf(std::string_view text) {
   }
   const auto nodes = document.is_object() ? document.find("nodes") : document.end();
   if (nodes == document.end()) return document;
-  const Status status = check_nodes(children_of(*nodes));
-  if (!status.ok()) return status.error();
+  const auto at_node = find_nesting_fault(children_of(*nodes));
+  if (at_node) return fault(fmt::format("node {}: {}", at_node->node, at_node->what));
   return document;
 }
 

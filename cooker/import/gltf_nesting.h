@@ -11,13 +11,12 @@
 
 #include <boxtree/error.h>
 
+#include "cooker/import/node_nesting.h"
+
 namespace boxtree::cooker {
 
-/// Limits of nested JSON values, of nested nodes, and of repeated visits of nodes (one per path
-/// from a node without a parent, minus one per node): some two seconds of assimp's time.
+/// Limit of nested JSON values. Those of nodes are in node_nesting.h.
 inline constexpr std::uint32_t kMaxJsonDepth = 256;
-inline constexpr std::uint32_t kMaxNodeDepth = 1024;
-inline constexpr std::uint64_t kMaxRepeatedVisits = std::uint64_t{1} << 18;
 
 /// The document in `text`, glTF 1 or 2; a discarded value if it is not JSON, for the reader to
 /// refuse. kImportFailed if it nests deeper than the limits, its nodes form a cycle, or an object
