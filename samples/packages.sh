@@ -5,7 +5,7 @@
 #   samples/packages.sh install LIST|PACKAGE...     as in: install BUILD_PACKAGES glmark2-data
 # shellcheck disable=SC2034 # the lists are read by the scripts that source it
 
-BUILD_PACKAGES="g++ cmake make ninja-build libeigen3-dev libassimp-dev libdraco-dev libminizip-dev
+BUILD_PACKAGES="g++ cmake make ninja-build libeigen3-dev libassimp-dev libpugixml-dev libdraco-dev libminizip-dev
   zlib1g-dev libtbb-dev pkg-config liblzma-dev libzstd-dev libssl-dev libcurl4-openssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
   libhwy-dev libtomlplusplus-dev"
 SAMPLE_PACKAGES="glmark2-data assimp-testmodels"

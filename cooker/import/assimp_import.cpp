@@ -22,6 +22,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cooker/import/collada_values.h"
 #include "cooker/import/f32_digits.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/flatten.h"
@@ -231,9 +232,16 @@ struct TextFacts {
 
 Result<TextFacts> check_text(const SourceFile& source) {
   const TextFormat* const format = find_extension(kTextFormats, source.path());
-  if (format == nullptr && !has_extension(source.path(), "dae")) return TextFacts();
+  const bool is_collada = has_extension(source.path(), "dae");
+  const bool is_xml = has_extension(source.path(), "xml");
+  if (format == nullptr && !is_collada && !is_xml) return TextFacts();
   const Result<std::string> file = source.read();
   if (!file.ok()) return file.error();
+  if (is_collada || (is_xml && file->find("<COLLADA") != std::string::npos)) {
+    const Status status = check_collada(*file);
+    if (!status.ok()) return in_file(source.title(), status.error());
+  }
+  if (is_xml) return TextFacts();
   TextFacts facts;
   if (format != nullptr && format->check_end != nullptr) {
     const Status status = format->check_end(*file);
@@ -301,6 +309,8 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
 }
 
 Result<SourceFileList> list_assimp_files(const SourceFile& source, const ImportOptions& options) {
+  const Result<TextFacts> text = check_text(source);
+  if (!text.ok()) return text.error();
   if (options.try_first) {
     const Status tried = try_reading(source);
     if (!tried.ok()) return in_file(source.title(), tried.error());
