@@ -25,9 +25,9 @@ every_tenth() {
   done
 }
 if [ -t 1 ]; then
-  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart boxtree_cli
+  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart -j"$(nproc)" boxtree_cli
 else
-  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart boxtree_cli | every_tenth
+  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart -j"$(nproc)" boxtree_cli | every_tenth
 fi
 boxtree=build/quickstart/boxtree
 out=build/quickstart/cooked

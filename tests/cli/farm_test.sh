@@ -188,8 +188,8 @@ echo "{\"inputs\":[\"in/m1.obj\"],\"output\":\"cooked/$(printf 'x%.0s' $(seq 300
 expect 3 "$boxtree" cook --manifest long.jsonl --json
 same "$(jq -c '[.error.name, .error.status, .error.may_pass]' out)" '["write_failed",2,false]'
 # Found by a newcomer: the word behind an unknown option was told to be a mesh, which excludes --manifest.
-expect 1 "$boxtree" key --manifest bad.jsonl --memory 1G
-same "$(head -1 err)" "boxtree: usage: key: '--memory' is no option of key, but of cook"
+expect 1 "$boxtree" key --manifest bad.jsonl --fail-fast
+same "$(head -1 err)" "boxtree: usage: key: '--fail-fast' is no option of key, but of cook"
 expect 1 "$boxtree" cook --manifest bad.jsonl --cahce x
 same "$(head -1 err)" "boxtree: usage: cook: '--cahce' is no option; did you mean '--cache'?"
 # Found by a newcomer: names of something else are retried for ever.
