@@ -29,11 +29,16 @@ Pose pose_of(const std::byte* numbers, std::uint32_t bytes) noexcept {
 }  // namespace
 
 void BoundScene::rebuild() {
-  if (moving_.empty()) return;
   const DefaultFloatState state;
-  Array<Box<double>> boxes(moving_.size(), empty_box<double>(), &memory_);
-  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = to_frame(moving_[i].bounds.world);
-  moving_tree_.build(boxes);
+  build_over(moving_);
+}
+
+void BoundScene::build_over(const Array<Moving>& moving) {
+  if (moving.empty()) return;
+  Array<Box<double>> boxes(moving.size(), empty_box<double>(), &memory_);
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = to_frame(moving[i].bounds.world);
+  MovingTree tree(boxes, &memory_);
+  moving_tree_.swap(tree);
 }
 
 Status BoundScene::update(std::uint32_t instance, const Pose& pose) {

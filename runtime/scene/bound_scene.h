@@ -171,7 +171,9 @@ class BoundScene {
   Status place_in_frame(std::span<const PlacedTree> instances);
   Status place_each(std::span<const PlacedTree> instances);
   void keep_user_data(std::span<const PlacedTree> instances);
-  void index_moving();
+  /// Sets what moves and the tree over it; all stays as it was where memory is missing.
+  void take_moving(Array<Moving>& moving);
+  void build_over(const Array<Moving>& moving);
   /// Nothing if the pose is not finite, is not invertible or leads beyond kMaxCoordinate.
   [[nodiscard]] std::optional<Posed> posed(const BoundTree& tree, const Pose& pose) const noexcept;
   /// What is said then.

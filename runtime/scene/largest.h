@@ -15,11 +15,12 @@ namespace boxtree {
 class Largest {
  public:
   explicit Largest(const Memory* memory) noexcept : largest_(memory) {}
+  /// Of `count` numbers, all zero. Allocates.
+  Largest(std::size_t count, const Memory* memory)
+      : largest_(2 * std::bit_ceil(std::max<std::size_t>(count, 1)), 0.0, memory) {}
 
-  /// Makes room for `count` numbers, all zero. Allocates.
-  void reset(std::size_t count) {
-    largest_.assign(2 * std::bit_ceil(std::max<std::size_t>(count, 1)), 0.0);
-  }
+  /// Precondition: both are of one memory.
+  void swap(Largest& other) noexcept { largest_.swap(other.largest_); }
 
   /// Precondition: i < count. O(log count), no allocation.
   void set(std::size_t i, double number) noexcept {
@@ -28,7 +29,7 @@ class Largest {
     for (at /= 2; at > 0; at /= 2) largest_[at] = std::max(largest_[2 * at], largest_[2 * at + 1]);
   }
 
-  /// Zero before reset().
+  /// Zero of none.
   [[nodiscard]] double of_all() const noexcept { return largest_.empty() ? 0 : largest_[1]; }
 
  private:

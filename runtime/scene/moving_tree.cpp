@@ -42,13 +42,13 @@ void sort_in_space(std::span<std::uint32_t> numbers, std::uint32_t size,
 
 }  // namespace
 
-void MovingTree::build(std::span<const Box<double>> boxes) {
+MovingTree::MovingTree(std::span<const Box<double>> boxes, const Memory* memory)
+    : leaves_(std::bit_ceil(std::max(static_cast<std::uint32_t>(boxes.size()), 1u))),
+      nodes_(2 * std::size_t{leaves_}, empty_box<double>(), memory),
+      place_(boxes.size(), memory),
+      at_place_(leaves_, memory) {
   const auto count = static_cast<std::uint32_t>(boxes.size());
-  leaves_ = std::bit_ceil(std::max(count, 1u));
-  nodes_.assign(2 * std::size_t{leaves_}, empty_box<double>());
-  place_.resize(count);
-  at_place_.assign(leaves_, 0);
-  Array<std::uint32_t> numbers(count, place_.get_allocator());
+  Array<std::uint32_t> numbers(count, memory);
   std::iota(numbers.begin(), numbers.end(), 0u);
   sort_in_space(numbers, leaves_, boxes);
   for (std::uint32_t place = 0; place < count; ++place) {

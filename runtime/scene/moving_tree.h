@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "format/children.h"
 #include "format/memory.h"
@@ -41,7 +42,14 @@ class MovingTree {
       : nodes_(memory), place_(memory), at_place_(memory) {}
 
   /// Assigns places to instances with these boxes and builds the tree over them. Allocates.
-  void build(std::span<const Box<double>> boxes);
+  MovingTree(std::span<const Box<double>> boxes, const Memory* memory);
+  /// Precondition: both are of one memory.
+  void swap(MovingTree& other) noexcept {
+    std::swap(leaves_, other.leaves_);
+    nodes_.swap(other.nodes_);
+    place_.swap(other.place_);
+    at_place_.swap(other.at_place_);
+  }
   /// Gives the instance with number `moving` another box; O(log n), no allocation.
   void refit(std::uint32_t moving, const Box<double>& box) noexcept;
 

@@ -170,7 +170,7 @@ Status BoundScene::place_in_frame(std::span<const PlacedTree> instances) {
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = moving_[i].bounds.world;
   frame_ = frame_around(boxes, top_.scene.scale_exponent);
   if (Status status = place_each(instances); !status) return status;
-  index_moving();
+  take_moving(moving_);
   return {};
 }
 

@@ -191,16 +191,18 @@ Status BoundScene::bind_moving(Array<std::uint32_t> numbers) {
     moving.push_back({number, *placed, *bounds});
     moving.back().placed.inactive = {};  // it may leave those beside it
   }
-  moving_ = std::move(moving);
+  take_moving(moving);
   has_detached_ = detaches;
-  index_moving();
   return {};
 }
 
-void BoundScene::index_moving() {
-  conditions_.reset(moving_.size());
-  for (std::size_t i = 0; i < moving_.size(); ++i) conditions_.set(i, moving_[i].bounds.condition);
-  rebuild();
+void BoundScene::take_moving(Array<Moving>& moving) {
+  Largest conditions(moving.size(), &memory_);
+  for (std::size_t i = 0; i < moving.size(); ++i) conditions.set(i, moving[i].bounds.condition);
+  build_over(moving);
+  // Nothing from here on allocates.
+  moving_.swap(moving);
+  conditions_.swap(conditions);
 }
 
 }  // namespace boxtree

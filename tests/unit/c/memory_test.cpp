@@ -278,6 +278,51 @@ TEST(CMemory, ThatOperatorNewDoesNotHaveIsAnError) {
   }
 }
 
+// Found by a tester: an instance that could not be made movable was in no answer, and an update of
+// it crashed.
+TEST(CMemory, ThatASceneDoesNotGetLeavesItAsItWas) {
+  const test::CookedScene cooked =
+      test::cook_scene({test::torus(12, 8), test::city(4, 1)}, test::random_parts(40, 2, 6, 1, 1));
+  const test::CFile file = test::open_c(cooked.bytes);
+  bxt_scene* bound = nullptr;
+  ASSERT_EQ(bxt_scene_bind(file.get(), nullptr, &bound, nullptr), BXT_OK);
+  const test::CScene scene(bound);
+  const auto faces = [&] {
+    std::size_t count = 0;
+    const bxt_vec3 low{-1e9, -1e9, -1e9}, high{1e9, 1e9, 1e9};
+    const auto add = [](void* context, const bxt_face*) {
+      ++*static_cast<std::size_t*>(context);
+      return true;
+    };
+    EXPECT_EQ(bxt_scene_overlap_box(scene.get(), &low, &high, add, &count, nullptr, nullptr),
+              BXT_OK);
+    return count;
+  };
+  const std::size_t all = faces();
+  const bxt_pose pose{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+  std::size_t failures = 0;
+  for (std::uint32_t i = 0; i < bxt_scene_instance_count(scene.get()); ++i) {
+    bxt_instance instance{};
+    instance.struct_size = sizeof(instance);
+    ASSERT_EQ(bxt_scene_instance(scene.get(), i, &instance, nullptr), BXT_OK);
+    for (std::size_t until = 0;; ++until) {
+      until_fails = until;
+      counts = true;
+      const bxt_status status = instance.moves ? bxt_scene_rebuild(scene.get(), nullptr)
+                                               : bxt_scene_make_movable(scene.get(), i, nullptr);
+      counts = false;
+      ASSERT_EQ(faces(), all) << "instance " << i << ", allocation " << until;
+      if (status == BXT_OK) break;
+      ASSERT_EQ(status, BXT_OUT_OF_MEMORY);
+      ++failures;
+      if (!instance.moves) {
+        ASSERT_EQ(bxt_scene_update(scene.get(), i, &pose, nullptr), BXT_INSTANCE_STATIC);
+      }
+    }
+  }
+  EXPECT_GT(failures, 20u);
+}
+
 TEST(CMemory, IsNotTakenByQueries) {
   const test::CookedScene cooked =
       test::cook_scene({test::torus(12, 8), test::city(4, 1)}, test::random_parts(40, 2, 6, 1, 1));

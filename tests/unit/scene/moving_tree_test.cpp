@@ -44,8 +44,7 @@ TEST(MovingTree, FindsWhatOverlapsBeforeAndAfterMoving) {
   for (const std::size_t count : {1u, 2u, 3u, 5u, 8u, 33u, 100u}) {
     std::vector<Box<double>> boxes;
     for (std::size_t i = 0; i < count; ++i) boxes.push_back(random_box(random));
-    MovingTree tree;
-    tree.build(boxes);
+    MovingTree tree(boxes, nullptr);
     for (int round = 0; round < 200; ++round) {
       WalkBound nodes(tree.node_count());
       All query{tree, boxes, {}, random_box(random), nodes};
@@ -82,8 +81,7 @@ TEST(MovingTree, NeighboursInTheTreeAreNeighboursInSpace) {
         boxes.back().high[k] += away + size;
       }
     }
-    MovingTree tree;
-    tree.build(boxes);
+    MovingTree tree(boxes, nullptr);
     ChildSet<2, double> children;
     ASSERT_EQ(tree.decoder().expand(tree.root_ref(), tree.root_box(), children), NodeState::kValid);
     ASSERT_EQ(children.count, 2u);
