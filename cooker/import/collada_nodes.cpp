@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "cooker/import/node_nesting.h"
+#include "cooker/import/transform_values.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -26,9 +27,6 @@ struct TransformKind {
 constexpr std::array kTransformKinds = {TransformKind{"matrix", 16}, TransformKind{"rotate", 4},
                                         TransformKind{"translate", 3}, TransformKind{"scale", 3},
                                         TransformKind{"lookat", 9}};
-
-// How far axes and last rows may be off, as in glTF (gltf_values.cpp).
-constexpr double kMostOffInCollada = 0.00769;
 
 class NodeChecker {
  public:
@@ -182,14 +180,14 @@ class NodeChecker {
   // Assimp's matrix of a rotation about another axis scales.
   bool check_axis(const std::array<double, 16>& numbers) {
     const double length = std::hypot(numbers[0], numbers[1], numbers[2]);
-    return std::fmod(numbers[3], 360) == 0 || std::abs(length - 1) <= kMostOffInCollada ||
+    return std::fmod(numbers[3], 360) == 0 || is_unit_length(length) ||
            faults_.fail("rotate", "an axis of length 1, which assimp takes it for",
                         fmt::format("length {:.6g}", length));
   }
 
   bool check_last_row(const std::array<double, 16>& numbers) {
     for (std::size_t i = 12; i < 16; ++i) {
-      if (!(std::abs(numbers[i] - (i == 15 ? 1 : 0)) <= kMostOffInCollada)) {
+      if (!is_in_last_row(numbers[i], i - 12)) {
         return faults_.fail("matrix", "0, 0, 0, 1 as its last row",
                             fmt::format("{:.6g} in column {}", numbers[i], i - 12));
       }

@@ -16,6 +16,7 @@
 #include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_extensions.h"
 #include "cooker/import/gltf_primitives.h"
+#include "cooker/import/transform_values.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -24,10 +25,6 @@ using Json = nlohmann::json;
 
 // Of modes (specification, 5.24.4); the last is that of fans.
 constexpr std::uint64_t kTriangles = 4, kTriangleFan = 6;
-
-// How far rotations and the last rows of matrices may be off: numbers with three decimals are
-// common. Khronos' glTF validator takes as much (UNIT_LENGTH_PRECISION).
-constexpr double kMostOff = 0.00769;
 
 // A value for a message.
 std::string shown(const Json& value) {
@@ -59,7 +56,7 @@ class ValueChecker {
   bool check_scenes() {
     const Json& scenes = array_at(document_, "scenes");
     place_ = "the document";
-    if (scenes.is_array() && !scenes.empty() && !index(document_, "scene", "scenes")) return false;
+    if (!scenes.empty() && !index(document_, "scene", "scenes")) return false;
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       place_ = fmt::format("scene {}", i);
       if (!is_object(scenes[i]) || !indices(scenes[i], "nodes", "nodes")) return false;
@@ -88,7 +85,7 @@ class ValueChecker {
     double squared = 0;
     for (const Json& each : *rotation) squared += each.get<double>() * each.get<double>();
     const double length = std::sqrt(squared);
-    return std::abs(length - 1) <= kMostOff ||
+    return is_unit_length(length) ||
            fail("rotation", "a quaternion of length 1", fmt::format("length {:.6g}", length));
   }
 
@@ -99,7 +96,7 @@ class ValueChecker {
     if (matrix == nullptr) return true;
     for (std::size_t column = 0; column < 4; ++column) {
       const double last = (*matrix)[4 * column + 3].get<double>();
-      if (!(std::abs(last - (column == 3 ? 1 : 0)) <= kMostOff)) {
+      if (!is_in_last_row(last, column)) {
         return fail("matrix", "0, 0, 0, 1 as its last row",
                     fmt::format("{:.6g} in column {}", last, column));
       }

@@ -284,9 +284,7 @@ TEST(CMemory, ThatASceneDoesNotGetLeavesItAsItWas) {
   const test::CookedScene cooked =
       test::cook_scene({test::torus(12, 8), test::city(4, 1)}, test::random_parts(40, 2, 6, 1, 1));
   const test::CFile file = test::open_c(cooked.bytes);
-  bxt_scene* bound = nullptr;
-  ASSERT_EQ(bxt_scene_bind(file.get(), nullptr, &bound, nullptr), BXT_OK);
-  const test::CScene scene(bound);
+  const test::CScene scene = test::bind_scene_c(file);
   const auto faces = [&] {
     std::size_t count = 0;
     const bxt_vec3 low{-1e9, -1e9, -1e9}, high{1e9, 1e9, 1e9};
@@ -329,9 +327,7 @@ TEST(CMemory, IsNotTakenByQueries) {
   const std::vector<std::byte> bytes = test::cook_bytes(test::torus(20, 12), CodecId::kWide8);
   const test::CFile file = test::open_c(bytes), scene_file = test::open_c(cooked.bytes);
   const test::CTree tree = test::bind_c(file);
-  bxt_scene* bound = nullptr;
-  ASSERT_EQ(bxt_scene_bind(scene_file.get(), nullptr, &bound, nullptr), BXT_OK);
-  const test::CScene scene(bound);
+  const test::CScene scene = test::bind_scene_c(scene_file);
   for (const test::CQuery& query : test::c_queries(tree.get(), scene.get(), {1, 0, 0}, 3)) {
     news = 0;
     until_fails = SIZE_MAX;

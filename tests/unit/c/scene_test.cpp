@@ -152,9 +152,7 @@ TEST(CScenes, AreChangedAsByCpp) {
       test::cook_scene({test::torus(8, 6)}, test::random_parts(12, 1, 3, 1, 1));
   Scene scene = test::require(Scene::bind(cooked.file));
   const test::CFile file = test::open_c(cooked.bytes);
-  bxt_scene* bound = nullptr;
-  ASSERT_EQ(bxt_scene_bind(file.get(), nullptr, &bound, nullptr), BXT_OK);
-  const test::CScene c_scene(bound);
+  const test::CScene c_scene = test::bind_scene_c(file);
   std::size_t moved = 0;
   for (int round = 0; round < 2; ++round) {
     for (std::uint32_t i = 0; i <= scene.instance_count(); ++i) {

@@ -22,9 +22,7 @@ TEST(CStack, OfQueriesIsAsDocumented) {
   const test::CookedScene cooked =
       test::cook_scene({test::torus(12, 8), test::city(4, 1)}, test::random_parts(40, 2, 6, 1, 1));
   const test::CFile scene_file = test::open_c(cooked.bytes);
-  bxt_scene* bound = nullptr;
-  ASSERT_EQ(bxt_scene_bind(scene_file.get(), nullptr, &bound, nullptr), BXT_OK);
-  const test::CScene scene(bound);
+  const test::CScene scene = test::bind_scene_c(scene_file);
   const std::size_t idle = test::bytes_used([] {});
   for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
     const std::vector<std::byte> bytes = test::cook_bytes(test::terrain(120, 3), codec);

@@ -33,19 +33,12 @@ struct Padded {
 
 class CArguments : public testing::Test {
  protected:
-  CArguments() {
-    bound_ = nullptr;
-    EXPECT_EQ(bxt_scene_bind(scene_file_.get(), nullptr, &bound_, nullptr), BXT_OK);
-    scene_.reset(bound_);
-  }
-
   test::CookedScene cooked_ =
       test::cook_scene({test::torus(8, 6), test::city(2, 1)}, test::random_parts(8, 2, 3, 1, 1));
   std::vector<std::byte> bytes_ = test::cook_bytes(test::torus(8, 6), CodecId::kWide8);
   test::CFile file_ = test::open_c(bytes_), scene_file_ = test::open_c(cooked_.bytes);
   test::CTree tree_ = test::bind_c(file_);
-  test::CScene scene_;
-  bxt_scene* bound_;
+  test::CScene scene_ = test::bind_scene_c(scene_file_);
 
   const bxt_ray ray_ = {{0, 0, 9}, {0.01, 0.02, -1}, 0, INFINITY};
   const bxt_vec3 point_ = {0, 0, 0}, min_ = {-9, -9, -9}, max_ = {9, 9, 9};

@@ -92,6 +92,14 @@ CTree bind_c(const CFile& file, std::uint32_t number, const bxt_tree_options* op
   return CTree(tree);
 }
 
+CScene bind_scene_c(const CFile& file) {
+  bxt_error error = {};
+  error.struct_size = sizeof error;
+  bxt_scene* scene = nullptr;
+  require_ok(bxt_scene_bind(file.get(), nullptr, &scene, &error), error);
+  return CScene(scene);
+}
+
 void for_each_tree(const std::function<void(const Tree&, const bxt_tree*)>& body) {
   for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
     for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid, GeometryId::kArrays}) {
@@ -155,9 +163,7 @@ void for_each_bound_scene(const std::function<void(const Scene&, const bxt_scene
         cook_scene({torus(10, 8), city(3, 1)}, random_parts(30, 2, 4, 2, 1), {codec}, options);
     Scene scene = require(Scene::bind(cooked.file));
     const CFile c_file = open_c(cooked.bytes);
-    bxt_scene* bound = nullptr;
-    ASSERT_EQ(bxt_scene_bind(c_file.get(), nullptr, &bound, nullptr), BXT_OK);
-    const CScene c_scene(bound);
+    const CScene c_scene = bind_scene_c(c_file);
     body(scene, c_scene.get());
     change(scene, c_scene.get());
     body(scene, c_scene.get());

@@ -33,6 +33,7 @@ using CScene = std::unique_ptr<bxt_scene, Release>;
 [[nodiscard]] CFile open_c(const std::vector<std::byte>& bytes);
 [[nodiscard]] CTree bind_c(const CFile& file, std::uint32_t number = BXT_ONLY_TREE,
                            const bxt_tree_options* options = nullptr);
+[[nodiscard]] CScene bind_scene_c(const CFile& file);
 
 /// Arrays of the application's, for C.
 [[nodiscard]] bxt_mesh mesh_of(const MeshArrays& arrays);
