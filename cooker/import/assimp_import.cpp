@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -35,7 +36,9 @@
 #include "cooker/import/gltf_user_data.h"
 #include "cooker/import/gltf_values.h"
 #include "cooker/import/node_graph.h"
+#include "cooker/import/reader_log.h"
 #include "cooker/import/recording_io.h"
+#include "cooker/import/scene_hash.h"
 #include "cooker/import/scene_intake.h"
 #include "cooker/import/source_files.h"
 #include "cooker/import/text_ends.h"
@@ -85,6 +88,20 @@ constexpr std::array kTextFormats = {
     TextFormat{"smd", check_smd_end},
 };
 
+// Whether a file is text in which a comma ends a number (TextMends::commas). Files that are packed
+// begin otherwise.
+bool parts_numbers_by_commas(const SourceFile& source) {
+  const bool is_x = has_extension(source.path(), "x");
+  const bool is_xml = has_extension(source.path(), "x3d") || has_extension(source.path(), "xgl");
+  if (!is_x && !is_xml) return false;
+  const Result<std::string> text = source.read();
+  if (!text.ok()) return false;
+  // "xof 0303txt 0032": a name, a version, the kind, the bits of a float.
+  if (is_x)
+    return text->starts_with("xof ") && text->find("txt") == std::string_view("xof 0303").size();
+  return text->find('\0') == std::string::npos && text->find('<') != std::string::npos;
+}
+
 // Its reader of Collada gives the root, which has no transform in the file, a scale: the metres of
 // a unit. Without it coordinates are those of the file.
 void undo_unit(aiScene& scene) {
@@ -102,10 +119,11 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
   const CLocaleScope numbers_in_c_locale;
   Assimp::Importer importer;
   configure(importer, order);
+  const ReaderLog log;
   const bool is_text = find_extension(kTextFormats, source.path()) != nullptr;
+  const TextMends mends{.line_end = is_text, .commas = parts_numbers_by_commas(source)};
   // The importer owns it from here.
-  importer.SetIOHandler(
-      new RecordingIo(source, use, is_text ? LastLine::kEnded : LastLine::kAsItIs));
+  importer.SetIOHandler(new RecordingIo(source, use, mends));
   if (importer.ReadFile(source.path().string(), 0) == nullptr) {
     const std::string why = importer.GetErrorString();
     if (why == std::bad_alloc().what()) throw std::bad_alloc();  // as when we run out of memory
@@ -130,6 +148,11 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
                                source.path().extension().string())};
     }
     return Error{Errc::kImportFailed, why.empty() ? "no scene" : why};
+  }
+  if (!log.loss().empty()) {
+    return Error{Errc::kImportFailed,
+                 fmt::format("assimp's reader leaves out or makes up a part of it, and says: {}",
+                             log.loss())};
   }
   std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
   undo_unit(*scene);
@@ -167,18 +190,32 @@ Status take_over(const SourceFile& source, ImportWanted wanted, aiScene& scene,
   return take_scene(scene, placements, context, whole);
 }
 
-// Runs all of assimp's reading in a copy of this process.
-Status try_reading(const SourceFile& source) {
+// Runs all of assimp's reading in a copy of this process. Returns a hash of what it read there.
+Result<std::uint64_t> try_reading(const SourceFile& source) {
   const Result<std::uint64_t> size = source.size();
-  return try_in_child(trial_limits(size ? *size : 0), [&source] {
-    SourceUse use;
-    const auto scene = read_scene(source, FaceOrder::kOfFile, use);
-    if (!scene.ok()) return Status(scene.error());
-    if (has_extension(source.path(), "fbx")) {  // once more for its materials
-      static_cast<void>(read_scene(source, FaceOrder::kByMaterial, use));
-    }
-    return Status();
-  });
+  if (!size.ok()) return size.error();
+  const TrialLimits limits = trial_limits(*size);
+  const Result<std::uint64_t> hash =
+      try_in_child(limits, [&source, &size]() -> Result<std::uint64_t> {
+        SourceUse use;
+        use.opened = [&size](std::uint64_t bytes) {  // of all files that it refers to
+          extend_trial(trial_limits(std::max(*size, bytes)));
+        };
+        const auto scene = read_scene(source, FaceOrder::kOfFile, use);
+        if (!scene.ok()) return scene.error();
+        if (has_extension(source.path(), "fbx")) {  // once more for its materials
+          static_cast<void>(read_scene(source, FaceOrder::kByMaterial, use));
+        }
+        return geometry_hash(*scene.value());
+      });
+  // No fault of the machine's as long as a larger file would be allowed more.
+  if (hash.code() == Errc::kOutOfMemory && limits.bytes < trial_limits(~std::uint64_t{0}).bytes) {
+    return Error{Errc::kImportFailed,
+                 fmt::format("assimp's reader wants more than the {} MB of memory that a file of "
+                             "this size may take",
+                             limits.bytes >> 20)};
+  }
+  return hash;
 }
 
 struct GltfFacts {
@@ -252,6 +289,28 @@ Result<TextFacts> check_text(const SourceFile& source) {
   return facts;
 }
 
+struct Checks {
+  TextFacts text;
+  GltfFacts gltf;
+  std::optional<std::uint64_t> tried_hash;  // of what was read when it was tried
+};
+
+// All that is checked before assimp reads a file in this process.
+Result<Checks> check_source(const SourceFile& source, const ImportOptions& options,
+                            ImportReport& report) {
+  const Result<TextFacts> text = check_text(source);
+  if (!text.ok()) return text.error();
+  const Result<GltfFacts> gltf = check_gltf(source, report);
+  if (!gltf.ok()) return gltf.error();
+  Checks checks{*text, *gltf, std::nullopt};
+  if (options.try_first) {
+    const Result<std::uint64_t> tried = try_reading(source);
+    if (!tried.ok()) return in_file(source.title(), tried.error());
+    checks.tried_hash = *tried;
+  }
+  return checks;
+}
+
 bool has_f32_alone(const Positions& positions) {
   return positions.precision == Precision::kF64 && moved_by_f32(positions) == 0;
 }
@@ -270,29 +329,29 @@ void state_precision(SourceScene& scene) {
 
 Status import_with_assimp(const SourceFile& source, const ImportOptions& options,
                           ImportWanted wanted, ImportedFile& out) {
-  const Result<TextFacts> text = check_text(source);
-  if (!text.ok()) return text.error();
   ImportReport report;
-  const Result<GltfFacts> gltf = check_gltf(source, report);
-  if (!gltf.ok()) return gltf.error();
-  if (options.try_first) {
-    const Status tried = try_reading(source);
-    if (!tried.ok()) return in_file(source.title(), tried.error());
-  }
-  report.has_open_end = text->has_open_end;
+  const Result<Checks> checks = check_source(source, options, report);
+  if (!checks.ok()) return checks.error();
+  report.has_open_end = checks->text.has_open_end;
   SourceUse use;
   auto scene = read_scene(source, FaceOrder::kOfFile, use);
   if (!scene.ok()) return in_file(source.title(), scene.error());
-  if (Status status = check_stated_faces(gltf->faces, *scene.value()); !status.ok()) {
+  if (checks->tried_hash && *checks->tried_hash != geometry_hash(*scene.value())) {
+    return in_file(source.title(),
+                   Error{Errc::kImportFailed,
+                         "assimp's reader makes up a part of it, of memory that it has not set: "
+                         "read twice, it differs (or the file was changed in between)"});
+  }
+  if (Status status = check_stated_faces(checks->gltf.faces, *scene.value()); !status.ok()) {
     return in_file(source.title(), status.error());
   }
   report.files_read = use.files;
   const Result<std::vector<std::uint32_t>> user_data =
-      complete_gltf(source, *gltf, options, *scene.value(), report);
+      complete_gltf(source, checks->gltf, options, *scene.value(), report);
   if (!user_data.ok()) return user_data.error();
-  Status status =
-      take_over(source, wanted, *scene.value(),
-                {options, source.title(), {}, *user_data, text->loss}, std::move(report), out);
+  Status status = take_over(source, wanted, *scene.value(),
+                            {options, source.title(), {}, *user_data, checks->text.loss},
+                            std::move(report), out);
   if (!status.ok()) return status;
   // Hashed last, so that a refused file is not read twice.
   const Result<std::uint64_t> hash = source.bytes()
@@ -309,11 +368,9 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
 }
 
 Result<SourceFileList> list_assimp_files(const SourceFile& source, const ImportOptions& options) {
-  const Result<TextFacts> text = check_text(source);
-  if (!text.ok()) return text.error();
-  if (options.try_first) {
-    const Status tried = try_reading(source);
-    if (!tried.ok()) return in_file(source.title(), tried.error());
+  ImportReport unused;
+  if (const auto checks = check_source(source, options, unused); !checks.ok()) {
+    return checks.error();
   }
   SourceUse use;
   const auto scene = read_scene(source, FaceOrder::kOfFile, use);

@@ -48,10 +48,32 @@ void RecordingIo::note_failure(const fs::path& file) {
   if (!status.ok()) use_.failure = status.error();
 }
 
-Assimp::IOStream* RecordingIo::open_with_line_end() const {
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+std::string with_blanks_behind_commas(const std::string& text) {
+  std::string mended;
+  mended.reserve(text.size() + text.size() / 8);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    mended += text[i];
+    const bool is_inside = i > 0 && i + 1 < text.size();
+    if (text[i] == ',' && is_inside && is_digit(text[i - 1]) && is_digit(text[i + 1])) {
+      mended += ' ';
+    }
+  }
+  return mended;
+}
+
+}  // namespace
+
+Assimp::IOStream* RecordingIo::open_mended() const {
   Result<std::string> text = source_.read();
   if (!text.ok()) return nullptr;
-  if (has_open_end(*text)) text->push_back('\n');
+  if (mends_.commas) text = with_blanks_behind_commas(*text);
+  if (mends_.line_end && has_open_end(*text)) text->push_back('\n');
   auto bytes = std::make_unique<std::uint8_t[]>(text->size());
   std::memcpy(bytes.get(), text->data(), text->size());
   constexpr bool kOwn = true;  // the stream deletes the bytes
@@ -62,7 +84,7 @@ Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
   if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
   if (source_.bytes()) {
     if (is_source(path)) {
-      if (last_line_ == LastLine::kEnded) return open_with_line_end();
+      if (has_mends()) return open_mended();
       const auto* const data = reinterpret_cast<const std::uint8_t*>(source_.bytes()->data());
       return new Assimp::MemoryIOStream(data, source_.bytes()->size());
     }
@@ -75,14 +97,16 @@ Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
   const bool is_regular = fs::is_regular_file(file, error);
   Assimp::IOStream* stream = nullptr;
   if (is_regular) {
-    const bool adds_line_end = last_line_ == LastLine::kEnded && is_source(path);
-    stream = adds_line_end ? open_with_line_end() : DefaultIOSystem::Open(file.c_str(), mode);
+    stream =
+        has_mends() && is_source(path) ? open_mended() : DefaultIOSystem::Open(file.c_str(), mode);
   }
   if (stream == nullptr) {
     use_.absent.push_back(file);
     note_failure(file);
     return nullptr;
   }
+  use_.bytes_opened += stream->FileSize();
+  if (use_.opened) use_.opened(use_.bytes_opened);
   fs::path normal = tidied(file);
   if (std::find(use_.files.begin(), use_.files.end(), normal) == use_.files.end()) {
     use_.files.push_back(std::move(normal));

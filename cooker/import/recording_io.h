@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,11 +27,21 @@ struct SourceUse {
   std::filesystem::path inaccessible;
   /// Why the first file that could not be opened beside a named source could not be.
   std::optional<Error> failure;
+  /// Called, unless empty, whenever a file has been opened, with the bytes of all until then.
+  std::function<void(std::uint64_t bytes)> opened;
+  std::uint64_t bytes_opened = 0;
 };
 
-/// Whether assimp gets a line end behind a last line of the source that has none. Its reader of SMD
-/// goes on behind the end of its buffer without one.
-enum class LastLine : std::uint8_t { kAsItIs, kEnded };
+/// What is changed in a source that is text before assimp gets it, without which it reads another
+/// text than is there.
+struct TextMends {
+  /// A line end behind a last line that has none: its reader of SMD goes on behind the end of its
+  /// buffer without one.
+  bool line_end = false;
+  /// A blank behind a comma between two digits. Its readers of XGL, X and X3D take such a comma for
+  /// a decimal point, where in these formats it ends a number.
+  bool commas = false;
+};
 
 /// Lets assimp read but not write, and records each file that it opens, in order of first use.
 /// Files that it only looks for are not recorded. Of a source that is bytes, nothing else can be
@@ -38,8 +49,8 @@ enum class LastLine : std::uint8_t { kAsItIs, kEnded };
 class RecordingIo final : public Assimp::DefaultIOSystem {
  public:
   /// Source and use must outlive this object, which assimp's Importer owns.
-  RecordingIo(const SourceFile& source, SourceUse& use, LastLine last_line)
-      : source_(source), use_(use), last_line_(last_line) {}
+  RecordingIo(const SourceFile& source, SourceUse& use, TextMends mends)
+      : source_(source), use_(use), mends_(mends) {}
 
   bool Exists(const char* path) const override;
   Assimp::IOStream* Open(const char* path, const char* mode = "rb") override;
@@ -53,12 +64,13 @@ class RecordingIo final : public Assimp::DefaultIOSystem {
   // (%20) behind the folder of the source.
   [[nodiscard]] std::filesystem::path found(const char* path) const;
   void note_failure(const std::filesystem::path& file);
-  // The source with an end of its last line; null if it cannot be read.
-  [[nodiscard]] Assimp::IOStream* open_with_line_end() const;
+  [[nodiscard]] bool has_mends() const { return mends_.line_end || mends_.commas; }
+  // The source with mends; null if it cannot be read.
+  [[nodiscard]] Assimp::IOStream* open_mended() const;
 
   const SourceFile& source_;
   SourceUse& use_;
-  LastLine last_line_;
+  TextMends mends_;
 };
 
 /// While it exists, this thread reads numbers in the "C" locale, whatever the process has set: some

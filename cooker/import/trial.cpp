@@ -18,8 +18,12 @@
 #include <system_error>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 #ifdef __linux__
 #include <sys/prctl.h>
+#endif
+#ifdef __GLIBC__
+#include <malloc.h>
 #endif
 
 #include <fmt/format.h>
@@ -34,6 +38,14 @@ namespace boxtree::cooker {
 namespace {
 
 constexpr std::uint64_t kMostDetail = 1u << 16;  // of a message
+
+// What the copy says first; of an error its detail comes behind.
+struct Outcome {
+  std::uint32_t code;
+  std::uint32_t reserved;
+  std::uint64_t value;
+};
+static_assert(static_cast<int>(Errc::kOk) == 0);
 
 std::uint64_t page_bytes() {
   return static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
@@ -54,36 +66,64 @@ std::uint64_t address_space() {
 // An enumeration in the GNU C library, else an int.
 using Resource = decltype(RLIMIT_CPU);
 
+// Where it can be extended.
 void limit(Resource resource, std::uint64_t most) {
   rlimit now{};
   if (getrlimit(resource, &now) != 0) return;
-  now.rlim_cur = now.rlim_max = std::min<rlim_t>(now.rlim_max, most);
+  now.rlim_cur = std::min<rlim_t>(now.rlim_max, most);
   static_cast<void>(setrlimit(resource, &now));
+}
+
+// Of the copy, when it began.
+std::uint64_t bytes_at_start = 0;
+
+// What is allocated holds bytes that are neither zero nor a small number, of integers as of floats,
+// and so does what lies behind it: blocks come from a megabyte of such bytes, not from gaps that
+// work before has left.
+void disturb_memory() {
+#ifdef __GLIBC__
+  constexpr int kBytes = 0x69;
+  constexpr int kRegion = 1 << 20;
+  // Of blocks that are freed the library keeps 7 of each size up to this, and others.
+  constexpr std::size_t kMostSmall = 1040;
+  constexpr int kKept = 16;
+  static std::vector<void*> kept;
+  static_cast<void>(mallopt(M_MMAP_THRESHOLD, 2 * kRegion));
+  static_cast<void>(mallopt(M_TRIM_THRESHOLD, 2 * kRegion));
+  static_cast<void>(mallopt(M_PERTURB, kBytes));
+  for (std::size_t bytes = 16; bytes <= kMostSmall; bytes += 16) {
+    for (int i = 0; i < kKept; ++i) kept.push_back(std::malloc(bytes));
+  }
+  void* volatile region = std::malloc(kRegion);
+  std::free(region);  // joins the free end of the heap, filled
+#endif
 }
 
 // The code of the copy. It ends without the cleanup of exit(), which is the parent's.
 [[noreturn]] void be_child(int to_parent, const TrialLimits& limits,
-                           const std::function<Status()>& work) {
+                           const std::function<Result<std::uint64_t>()>& work) {
 #ifdef __linux__  // elsewhere it goes on until it has read the file, or reaches its limits
   static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));
 #endif
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, limits.cpu_seconds);
-  if (kLimitsMemory) limit(RLIMIT_AS, address_space() + limits.bytes);
+  bytes_at_start = address_space();
+  extend_trial(limits);
+  disturb_memory();
   const int nowhere = ::open("/dev/null", O_WRONLY);
   if (nowhere >= 0) {
     static_cast<void>(dup2(nowhere, STDOUT_FILENO));
     static_cast<void>(dup2(nowhere, STDERR_FILENO));
   }
-  Status status;
+  Result<std::uint64_t> result = Error{Errc::kInternal, ""};
   try {
-    status = work();
+    result = work();
   } catch (...) {
-    status = error_of_exception();
+    result = error_of_exception();
   }
-  const auto code = static_cast<std::uint16_t>(status.ok() ? Errc::kOk : status.error().code);
-  const std::string detail = status.ok() ? "" : status.error().detail.substr(0, kMostDetail);
-  const bool is_told = write_all(to_parent, std::as_bytes(std::span(&code, 1))) &&
+  const Outcome outcome{result.ok() ? 0u : static_cast<std::uint32_t>(result.error().code), 0,
+                        result.ok() ? *result : 0};
+  const std::string detail = result.ok() ? "" : result.error().detail.substr(0, kMostDetail);
+  const bool is_told = write_all(to_parent, std::as_bytes(std::span(&outcome, 1))) &&
                        write_all(to_parent, std::as_bytes(std::span(detail)));
   _exit(is_told ? 0 : 1);
 }
@@ -134,11 +174,21 @@ TrialLimits trial_limits(std::uint64_t file_bytes) {
   const long pages = sysconf(_SC_PHYS_PAGES);
   const std::uint64_t memory =
       pages > 0 ? static_cast<std::uint64_t>(pages) * page_bytes() : std::uint64_t{1} << 33;
-  const std::uint64_t seconds = 30 + file_bytes / 100000;
-  return {seconds, 10 * seconds, memory / 2};
+  const std::uint64_t seconds = 10 + file_bytes / 100000;
+  constexpr std::uint64_t kLeast = std::uint64_t{1} << 30;
+  constexpr std::uint64_t kOfByte = 1024;
+  const bool is_huge = file_bytes >= memory / kOfByte;
+  return {seconds, 10 * seconds + 200,
+          is_huge ? memory / 2 : std::min(memory / 2, kLeast + kOfByte * file_bytes)};
 }
 
-Status try_in_child(const TrialLimits& limits, const std::function<Status()>& work) {
+void extend_trial(const TrialLimits& limits) {
+  limit(RLIMIT_CPU, limits.cpu_seconds);
+  if (kLimitsMemory) limit(RLIMIT_AS, bytes_at_start + limits.bytes);
+}
+
+Result<std::uint64_t> try_in_child(const TrialLimits& limits,
+                                   const std::function<Result<std::uint64_t>()>& work) {
   std::array<int, 2> ends;
   if (!open_pipe(ends)) return no_child("pipe", errno);
   const pid_t child = ::fork();
@@ -163,14 +213,14 @@ Status try_in_child(const TrialLimits& limits, const std::function<Status()>& wo
   }
   if (!said) return ended("since it did not end by itself", limits);
   if (WIFSIGNALED(how)) return crashed(WTERMSIG(how), limits);
-  if (WEXITSTATUS(how) != 0 || said->size() < sizeof(std::uint16_t)) {
+  if (WEXITSTATUS(how) != 0 || said->size() < sizeof(Outcome)) {
     return Error{
         Errc::kImportFailed,
         fmt::format("assimp's reader ended the process, with status {}", WEXITSTATUS(how))};
   }
-  const auto code = load<std::uint16_t>(reinterpret_cast<const std::byte*>(said->data()));
-  if (code == 0) return {};
-  return Error{static_cast<Errc>(code), said->substr(sizeof(code))};
+  const auto outcome = load<Outcome>(reinterpret_cast<const std::byte*>(said->data()));
+  if (outcome.code == 0) return outcome.value;
+  return Error{static_cast<Errc>(outcome.code), said->substr(sizeof(outcome))};
 }
 
 }  // namespace boxtree::cooker

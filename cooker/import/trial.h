@@ -27,16 +27,24 @@ inline constexpr bool kLimitsMemory = false;
 inline constexpr bool kLimitsMemory = true;
 #endif
 
-/// Limits for a file of this size: half of the machine's memory, 30 s of processor time plus one
-/// second per 100 kB, a tenth of the speed of assimp's slowest readers, and ten times that by the
-/// clock, since a machine may have more to do.
+/// Limits for files of this size in all. Memory: 1 GiB plus 1 KiB a byte, ten times what readers of
+/// compressed formats take, but at most half of the machine's. Processor time: 10 s plus a second
+/// per 100 kB, a tenth of the speed of assimp's slowest readers. By the clock ten times that and
+/// 200 s more, since a machine may have more to do.
 [[nodiscard]] TrialLimits trial_limits(std::uint64_t file_bytes);
+
+/// In the copy that try_in_child() made: from now on these limits of memory and processor time hold
+/// instead of those it began with, in all.
+void extend_trial(const TrialLimits& limits);
 
 /// Runs `work` in a copy of this process and returns its result; other effects are lost, including
 /// what the copy prints. kOutOfMemory if the copy needs more than `limits.bytes`, kImportFailed
 /// with the reason if it crashes, takes more of either time than its limit, stopped or not, or
 /// cannot be started. The copy has one thread. It starts with the same memory, so work that
-/// succeeds in it succeeds here, unless it depends on clocks or other threads.
-Status try_in_child(const TrialLimits& limits, const std::function<Status()>& work);
+/// succeeds in it succeeds here, unless it depends on clocks or other threads, or on memory that it
+/// has not set: in the copy what is allocated holds other bytes than zero (GNU C library), so that
+/// a result that depends on them differs.
+Result<std::uint64_t> try_in_child(const TrialLimits& limits,
+                                   const std::function<Result<std::uint64_t>()>& work);
 
 }  // namespace boxtree::cooker

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <assimp/scene.h>
-#include <fmt/format.h>
 
 #include "cooker/import/source_scene.h"
+#include "fbx_text.h"
 #include "placed_triangles.h"
 #include "temp_files.h"
 
@@ -23,76 +23,6 @@ Runs runs_of(const std::vector<FaceRun>& materials) {
   Runs runs;
   for (const FaceRun& run : materials) runs.push_back({run.first_face, run.number});
   return runs;
-}
-
-// A ladder of eight vertices, placed twice. `corners`: polygons, each ended by -1 - its last
-// vertex; `materials`: of each, by number among stone and glass.
-std::string fbx(const std::string& corners, std::size_t corner_count, const std::string& materials,
-                std::size_t face_count) {
-  return fmt::format(R"(; FBX 7.4.0 project file
-FBXHeaderExtension:  {{
-	FBXHeaderVersion: 1003
-	FBXVersion: 7400
-}}
-GlobalSettings:  {{
-	Version: 1000
-}}
-Objects:  {{
-	Geometry: 10, "Geometry::ladder", "Mesh" {{
-		Vertices: *24 {{
-			a: 0,0,0,1,0,0,2,0,0,3,0,0,0,1,0,1,1,0,2,1,0,3,1,0
-		}}
-		PolygonVertexIndex: *{} {{
-			a: {}
-		}}
-		GeometryVersion: 124
-		LayerElementMaterial: 0 {{
-			Version: 101
-			Name: ""
-			MappingInformationType: "ByPolygon"
-			ReferenceInformationType: "IndexToDirect"
-			Materials: *{} {{
-				a: {}
-			}}
-		}}
-		Layer: 0 {{
-			Version: 100
-			LayerElement:  {{
-				Type: "LayerElementMaterial"
-				TypedIndex: 0
-			}}
-		}}
-	}}
-	Model: 20, "Model::left", "Mesh" {{
-		Version: 232
-	}}
-	Model: 21, "Model::right", "Mesh" {{
-		Version: 232
-		Properties70:  {{
-			P: "Lcl Translation", "Lcl Translation", "", "A",0,0,5
-		}}
-	}}
-	Material: 30, "Material::stone", "" {{
-		Version: 102
-		ShadingModel: "phong"
-	}}
-	Material: 31, "Material::glass", "" {{
-		Version: 102
-		ShadingModel: "phong"
-	}}
-}}
-Connections:  {{
-	C: "OO",20,0
-	C: "OO",21,0
-	C: "OO",10,20
-	C: "OO",10,21
-	C: "OO",30,20
-	C: "OO",31,20
-	C: "OO",30,21
-	C: "OO",31,21
-}}
-)",
-                     corner_count, corners, face_count, materials);
 }
 
 class FbxMaterials : public ImportTest {
@@ -136,7 +66,8 @@ class FbxMaterials : public ImportTest {
 };
 
 TEST_F(FbxMaterials, FacesThatTakeTurnsStayInTheirOrder) {
-  const SourceScene got = scene(fbx("0,1,5,-5,1,2,-7,1,6,-6,2,3,7,-7,3,7,-3", 17, "0,1,0,1,1", 5));
+  const SourceScene got =
+      scene(fbx_text("0,1,5,-5,1,2,-7,1,6,-6,2,3,7,-7,3,7,-3", 17, "0,1,0,1,1", 5));
   ASSERT_EQ(got.meshes.size(), 1u);
   EXPECT_EQ(got.instances.size(), 2u);
   EXPECT_EQ(got.materials, (std::vector<std::string>{"stone", "glass"}));
@@ -146,7 +77,7 @@ TEST_F(FbxMaterials, FacesThatTakeTurnsStayInTheirOrder) {
 }
 
 TEST_F(FbxMaterials, OnlyFacesOfThreeCornersCount) {
-  const SourceScene got = scene(fbx("0,1,-6,1,-3,5,6,-3,2,3,-8", 11, "1,0,1,0", 4));
+  const SourceScene got = scene(fbx_text("0,1,-6,1,-3,5,6,-3,2,3,-8", 11, "1,0,1,0", 4));
   ASSERT_EQ(got.meshes.size(), 1u);
   EXPECT_EQ(got.meshes[0].source_faces, 3u);
   EXPECT_EQ(got.materials, (std::vector<std::string>{"glass", "stone"}));
@@ -154,7 +85,7 @@ TEST_F(FbxMaterials, OnlyFacesOfThreeCornersCount) {
 }
 
 TEST_F(FbxMaterials, OneMaterialIsOneRun) {
-  const SourceScene got = scene(fbx("0,1,-6,1,2,-7", 6, "1,1", 2));
+  const SourceScene got = scene(fbx_text("0,1,-6,1,2,-7", 6, "1,1", 2));
   ASSERT_EQ(got.meshes.size(), 1u);
   EXPECT_EQ(got.materials, std::vector<std::string>{"glass"});
   EXPECT_EQ(runs_of(got.meshes[0].materials), (Runs{{0, 0}}));
@@ -162,7 +93,7 @@ TEST_F(FbxMaterials, OneMaterialIsOneRun) {
 
 // Two faces of the same corners: whichever is taken for which, all are found.
 TEST_F(FbxMaterials, EqualFacesOfTwoMaterials) {
-  const SourceScene got = scene(fbx("0,1,-6,0,1,-6,1,2,-7", 9, "1,0,0", 3));
+  const SourceScene got = scene(fbx_text("0,1,-6,0,1,-6,1,2,-7", 9, "1,0,0", 3));
   ASSERT_EQ(got.meshes.size(), 1u);
   EXPECT_EQ(got.materials, (std::vector<std::string>{"glass", "stone"}));
   EXPECT_EQ(runs_of(got.meshes[0].materials), (Runs{{0, 0}, {1, 1}}));

@@ -70,9 +70,9 @@ TEST(TextEnds, EveryPrefixOfSmdIsRefused) {
 // Assimp's reader of SMD skips what follows "end", even if that is the end of its buffer.
 TEST(TextEnds, ReadersGetALastLineThatEnds) {
   const test::TempFolder folder;
-  const auto given = [](const SourceFile& source, LastLine last_line) {
+  const auto given = [](const SourceFile& source, TextMends mends) {
     SourceUse use;
-    RecordingIo files(source, use, last_line);
+    RecordingIo files(source, use, mends);
     Assimp::IOStream* const stream = files.Open(source.path().c_str());
     std::string text(stream->FileSize(), ' ');
     EXPECT_EQ(stream->Read(text.data(), 1, text.size()), text.size());
@@ -81,11 +81,11 @@ TEST(TextEnds, ReadersGetALastLineThatEnds) {
   };
   for (const std::string whole : {"triangles\nend\n", "triangles\nend\r"}) {
     const std::string open = whole.substr(0, whole.size() - 1);
-    EXPECT_EQ(given(folder.write("whole.smd", whole), LastLine::kEnded), whole);
-    EXPECT_EQ(given(folder.write("open.smd", open), LastLine::kEnded), open + "\n");
-    EXPECT_EQ(given(folder.write("open.smd", open), LastLine::kAsItIs), open);
+    EXPECT_EQ(given(folder.write("whole.smd", whole), {.line_end = true}), whole);
+    EXPECT_EQ(given(folder.write("open.smd", open), {.line_end = true}), open + "\n");
+    EXPECT_EQ(given(folder.write("open.smd", open), {}), open);
     const SourceBytes bytes{"-", "standard input", "stdin.smd", std::as_bytes(std::span(open))};
-    EXPECT_EQ(given(SourceFile("-", bytes), LastLine::kEnded), open + "\n");
+    EXPECT_EQ(given(SourceFile("-", bytes), {.line_end = true}), open + "\n");
   }
 }
 
@@ -100,7 +100,9 @@ TEST(TextEnds, OpenEndsAreTold) {
   };
   EXPECT_FALSE(is_open(raw.size()));
   EXPECT_TRUE(is_open(raw.size() - 1));
-  EXPECT_TRUE(is_open(raw.size() - 5));
+  // Of a line that lacks numbers its reader would make no triangle.
+  EXPECT_EQ(import_mesh(folder.write("a.raw", raw.substr(0, raw.size() - 5))).code(),
+            Errc::kImportFailed);
 }
 
 TEST(TextEnds, Ac3dObjectsFollowWhereTheyAreStated) {

@@ -19,40 +19,44 @@
 namespace boxtree::cooker {
 namespace {
 
+using Value = Result<std::uint64_t>;
+
 constexpr TrialLimits kLimits{10, 100, std::uint64_t{1} << 28};
 
 TEST(Trial, WhatIsReturnedComesBackAndNothingElse) {
   int changed = 0;
-  EXPECT_TRUE(try_in_child(kLimits, [&changed] {
-                ++changed;
-                std::puts("printed by nobody");
-                return Status();
-              }).ok());
+  const Value result = try_in_child(kLimits, [&changed]() -> Value {
+    ++changed;
+    std::puts("printed by nobody");
+    return 0x123456789abcdef0u;
+  });
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(*result, 0x123456789abcdef0u);
   EXPECT_EQ(changed, 0);
-  const Status status = try_in_child(kLimits, [] {
-    return Status(Error{Errc::kNoFaces, "no face: \xc3\xa9"});
+  const Value status = try_in_child(kLimits, []() -> Value {
+    return Error{Errc::kNoFaces, "no face: \xc3\xa9"};
   });
   EXPECT_EQ(status.code(), Errc::kNoFaces);
   EXPECT_EQ(status.error().detail, "no face: \xc3\xa9");
 }
 
 TEST(Trial, CrashesAndExitsAreErrors) {
-  const Status crash = try_in_child(kLimits, []() -> Status {
+  const Value crash = try_in_child(kLimits, []() -> Value {
     static_cast<void>(std::signal(SIGSEGV, SIG_DFL));
     static_cast<void>(std::raise(SIGSEGV));
-    return {};
+    return 0;
   });
   EXPECT_EQ(crash.code(), Errc::kImportFailed);
   EXPECT_EQ(crash.error().detail, "assimp's reader crashed on it, by signal 11");
-  const Status exit = try_in_child(kLimits, []() -> Status { std::_Exit(7); });
+  const Value exit = try_in_child(kLimits, []() -> Value { std::_Exit(7); });
   EXPECT_EQ(exit.code(), Errc::kImportFailed);
   EXPECT_NE(exit.error().detail.find("status 7"), std::string::npos);
-  const Status thrown = try_in_child(kLimits, []() -> Status { throw 3; });
+  const Value thrown = try_in_child(kLimits, []() -> Value { throw 3; });
   EXPECT_EQ(thrown.code(), Errc::kImportFailed);
 }
 
 TEST(Trial, WhatNeverEndsIsEnded) {
-  const Status status = try_in_child({1, 100, kLimits.bytes}, []() -> Status {
+  const Value status = try_in_child({1, 100, kLimits.bytes}, []() -> Value {
     for (std::atomic<unsigned> turns = 0;;) ++turns;
   });
   EXPECT_EQ(status.code(), Errc::kImportFailed);
@@ -62,7 +66,7 @@ TEST(Trial, WhatNeverEndsIsEnded) {
 
 TEST(Trial, WhatIsStoppedIsEndedByTheClock) {
   for (const int signal : {SIGSTOP, 0}) {
-    const Status status = try_in_child({10, 2, kLimits.bytes}, [signal]() -> Status {
+    const Value status = try_in_child({10, 2, kLimits.bytes}, [signal]() -> Value {
       if (signal != 0) static_cast<void>(std::raise(signal));
       for (;;) ::pause();
     });
@@ -77,7 +81,7 @@ TEST(Trial, WhatIsStoppedIsEndedByTheClock) {
 }
 
 TEST(Trial, WhatClosesItsEndIsNotWaitedFor) {
-  const Status status = try_in_child({10, 100, kLimits.bytes}, []() -> Status {
+  const Value status = try_in_child({10, 100, kLimits.bytes}, []() -> Value {
     for (int file = 3; file < 64; ++file) ::close(file);
     for (;;) ::pause();
   });
@@ -89,7 +93,7 @@ TEST(Trial, MemoryHasALimit) {
   const auto take = [](std::size_t bytes) {
     return [bytes] {
       const std::vector<char> much(bytes, 'x');
-      return much[bytes / 2] == 'x' ? Status() : Status(Error{Errc::kInternal, ""});
+      return much[bytes / 2] == 'x' ? Value(1) : Value(Error{Errc::kInternal, ""});
     };
   };
   EXPECT_TRUE(try_in_child(kLimits, take(kLimits.bytes / 2)).ok());
