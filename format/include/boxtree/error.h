@@ -54,7 +54,7 @@ enum class Errc : std::uint16_t {
   // 50..59: binding and querying.
   kInvalidQuery = 50,  ///< NaN, infinite or empty query.
   kInvalidPose = 51,   ///< Pose is not finite or not invertible.
-  /// A needed part was left out; SceneOptions at Scene::bind() tells by which line.
+  /// A needed part was left out; require it when the file is bound, which tells the line.
   kPartLeftOut = 52,
   /// The tree was cooked without geometry; give the mesh when binding.
   kExternalMeshNeeded = 53,

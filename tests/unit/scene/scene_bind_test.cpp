@@ -108,8 +108,8 @@ TEST(SceneBind, NamesTheLineThatLeftAPartOut) {
   EXPECT_EQ(contacts(scene, [](const ScenePair&) { return true; }).code(), Errc::kPartLeftOut);
   // A query allocates no text: it says where the line is told.
   EXPECT_EQ(closest_point(scene, {0, 0, 0}).error().message(),
-            "part_left_out: a needed part was left out; SceneOptions at Scene::bind() tells "
-            "by which line");
+            "part_left_out: a needed part was left out; require it when the file is bound, "
+            "which tells the line");
   options = {};
   options.require_materials = true;
   EXPECT_EQ(Scene::bind(cooked.file, options).error().detail,
