@@ -122,8 +122,7 @@ class RayPacket {
     }
     std::uint32_t passing = 0;
     const float* const planes = &boxes.low[0][0];
-    constexpr std::size_t kSide = sizeof(boxes.low) / sizeof(float);
-    static_assert(offsetof(ChildBoxes, high) == sizeof(boxes.low));
+    constexpr std::size_t kSide = offsetof(ChildBoxes, high) / sizeof(float);
     for (; rays != 0; rays &= rays - 1) {
       const auto r = static_cast<std::uint32_t>(std::countr_zero(rays));
       std::uint32_t bits = 0;
