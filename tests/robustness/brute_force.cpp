@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -14,11 +13,12 @@
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
 #include "tests/robustness/cast_reference.h"
+#include "tests/support/infinity.h"
 
 namespace boxtree::robustness {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 auto collector(std::vector<std::uint32_t>& found) {
   return [&found](const FaceRef& face) {

@@ -3,19 +3,19 @@
 // start, from far away, along seams, into vertices. Long double decides.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/cast_reference.h"
 #include "tests/robustness/mesh_kinds.h"
+#include "tests/support/infinity.h"
 
 namespace boxtree::robustness {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 class Random {
  public:

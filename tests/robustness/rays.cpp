@@ -9,6 +9,7 @@
 #include "runtime/tree/bound_tree.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
+#include "tests/support/infinity.h"
 #include "tests/support/require.h"
 
 namespace boxtree::robustness {
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::ptrdiff_t kPackedHeader = sizeof(PackedHeader);
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 // Multiples of one half, the lattice of a city: every other one is in planes of its boxes. The sign
 // of a zero is random.

@@ -18,7 +18,7 @@ using cooker::kNoCorner;
 using cooker::SourceMesh;
 
 // A vertex of the plane z = x, moved by `height` along z.
-std::uint32_t add_vertex(SourceMesh& mesh, float x, float y, float height = 0) {
+std::uint32_t add_at(SourceMesh& mesh, float x, float y, float height = 0) {
   mesh.positions.f32.insert(mesh.positions.f32.end(), {x, y, x + height});
   return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
@@ -26,9 +26,9 @@ std::uint32_t add_vertex(SourceMesh& mesh, float x, float y, float height = 0) {
 SourceMesh one_triangle(const char* name) {
   SourceMesh mesh;
   mesh.name = name;
-  add_vertex(mesh, -0.5f, -0.5f);
-  add_vertex(mesh, 0.5f, -0.5f);
-  add_vertex(mesh, 0, 0.5f);
+  add_at(mesh, -0.5f, -0.5f);
+  add_at(mesh, 0.5f, -0.5f);
+  add_at(mesh, 0, 0.5f);
   return mesh;
 }
 
@@ -39,7 +39,7 @@ void add_plate(SourceMesh& mesh, unsigned cells, float height) {
     return static_cast<float>(i) / static_cast<float>(cells) - 0.5f;
   };
   for (unsigned i = 0; i <= cells; ++i) {
-    for (unsigned j = 0; j <= cells; ++j) add_vertex(mesh, at(i), at(j), height);
+    for (unsigned j = 0; j <= cells; ++j) add_at(mesh, at(i), at(j), height);
   }
   for (unsigned i = 0; i < cells; ++i) {
     for (unsigned j = 0; j < cells; ++j) {
@@ -78,7 +78,7 @@ SourceMesh overlapping_faces(unsigned faces, unsigned seed) {
     std::array<std::uint32_t, 3> corner;
     for (std::uint32_t& c : corner) {
       const float x = coordinate();
-      c = add_vertex(mesh, x, coordinate());
+      c = add_at(mesh, x, coordinate());
     }
     mesh.faces.push_back({{corner[0], corner[1], corner[2], kNoCorner}});
   }

@@ -11,11 +11,12 @@
 #include "tests/oracle/exact/families.h"
 #include "tests/oracle/exact/poses.h"
 #include "tests/oracle/exact/queries.h"
+#include "tests/support/infinity.h"
 
 namespace boxtree::oracle {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 // A triangle under the linear part of the first pose and the scale of its tree; the translation is
 // the same for both trees.

@@ -11,11 +11,12 @@
 
 #include "tests/oracle/exact/families.h"
 #include "tests/oracle/exact/queries.h"
+#include "tests/support/infinity.h"
 
 namespace boxtree::oracle {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 struct Setting {
   const Subject& subject;

@@ -11,11 +11,12 @@
 #include "tests/oracle/exact/families.h"
 #include "tests/oracle/exact/queries.h"
 #include "tests/oracle/exact/ray_truth.h"
+#include "tests/support/infinity.h"
 
 namespace boxtree::oracle {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 // Signs are exact for sheared corners, which are rounded a few times: 2^-46 is 64 ulp.
 constexpr double kTolerance = 0x1p-46;
 

@@ -36,7 +36,7 @@ struct Casts<bxt_scene> {
   static constexpr auto collide = bxt_scene_collide;
 };
 template <class Pointer>
-using FunctionsOf = Casts<std::remove_const_t<std::remove_pointer_t<Pointer>>>;
+using CastsOf = Casts<std::remove_const_t<std::remove_pointer_t<Pointer>>>;
 
 template <class Hit>
 Numbers numbers_of_hit(const Hit& hit, bool is_hit = true) {
@@ -84,7 +84,7 @@ Answer one_touch(Function function, const Handle* subject, const bxt_shape& shap
 }
 
 template <class Result>
-Answer answer_of(const Result& result) {
+Answer touch_of(const Result& result) {
   Answer answer;
   note_error(result, answer);
   if (result.ok()) answer.found.push_back(numbers_of_hit(*result, result.has_value()));
@@ -99,7 +99,7 @@ double keep_touch(void* context, const bxt_cast_hit* hit) {
 
 TEST(CCasts, AreThoseOfCpp) {
   test::for_each_subject([](const auto& subject, const auto* c_subject) {
-    using Functions = FunctionsOf<decltype(c_subject)>;
+    using Functions = CastsOf<decltype(c_subject)>;
     test::Randoms randoms(subject);
     std::size_t touches = 0;
     test::for_each_face_options(subject, [&](const bxt_face_options* c, const auto& options) {
@@ -112,9 +112,9 @@ TEST(CCasts, AreThoseOfCpp) {
         test::for_each_shape(
             randoms, randoms.size(), [&](const bxt_shape& c_shape, const auto& shape) {
               ASSERT_EQ(one_touch(Functions::closest, c_subject, c_shape, c_motion, c),
-                        answer_of(cast_closest(subject, shape, motion, options)));
+                        touch_of(cast_closest(subject, shape, motion, options)));
               ASSERT_EQ(one_touch(Functions::any, c_subject, c_shape, c_motion, c),
-                        answer_of(cast_any(subject, shape, motion, options)));
+                        touch_of(cast_any(subject, shape, motion, options)));
               Answer all;
               const auto visit = [&](const auto& hit) {
                 all.found.push_back(numbers_of_hit(hit));
@@ -142,7 +142,7 @@ bool keep_contact(void* context, const bxt_contact* contact) {
 
 TEST(CContacts, AreThoseOfCpp) {
   test::for_each_subject([](const auto& subject, const auto* c_subject) {
-    using Functions = FunctionsOf<decltype(c_subject)>;
+    using Functions = CastsOf<decltype(c_subject)>;
     using Found = std::conditional_t<std::is_same_v<std::decay_t<decltype(subject)>, Tree>, Contact,
                                      SceneContact>;
     test::Randoms randoms(subject);

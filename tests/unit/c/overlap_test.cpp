@@ -42,7 +42,7 @@ struct Overlaps<bxt_scene> {
   static constexpr auto frustum = bxt_scene_overlap_frustum;
 };
 template <class Pointer>
-using FunctionsOf = Overlaps<std::remove_const_t<std::remove_pointer_t<Pointer>>>;
+using OverlapsOf = Overlaps<std::remove_const_t<std::remove_pointer_t<Pointer>>>;
 
 // What a query of C++ visits, all of it or three: `query(visit)`.
 template <class Query>
@@ -66,7 +66,7 @@ Answer visited_c(bool all, const Query& query) {
 
 TEST(COverlaps, OfBoxesAreThoseOfCpp) {
   test::for_each_subject([](const auto& subject, const auto* c_subject) {
-    using Functions = FunctionsOf<decltype(c_subject)>;
+    using Functions = OverlapsOf<decltype(c_subject)>;
     test::Randoms randoms(subject);
     std::size_t found = 0;
     test::for_each_limits(subject, [&](const bxt_limits* c, const auto&... limits) {
@@ -136,7 +136,7 @@ void expect_as_alone(const BatchOfC& batch, bxt_status status, const Alone& alon
 
 TEST(COverlaps, OfABatchAreThoseOfShapesAlone) {
   test::for_each_subject([](const auto& subject, const auto* c_subject) {
-    using Functions = FunctionsOf<decltype(c_subject)>;
+    using Functions = OverlapsOf<decltype(c_subject)>;
     test::Randoms randoms(subject);
     for (const std::size_t count : {0u, 1u, 70u, 200u}) {
       std::vector<bxt_vec3> mins, maxs;
@@ -191,7 +191,7 @@ Result<Visit> overlap(const Subject& subject, const ConvexHull& shape, const Res
 
 TEST(COverlaps, OfShapesAreThoseOfCpp) {
   test::for_each_subject([](const auto& subject, const auto* c_subject) {
-    using Functions = FunctionsOf<decltype(c_subject)>;
+    using Functions = OverlapsOf<decltype(c_subject)>;
     test::Randoms randoms(subject);
     std::size_t found = 0;
     test::for_each_limits(subject, [&](const bxt_limits* c, const auto&... limits) {
@@ -217,7 +217,7 @@ TEST(COverlaps, OfShapesAreThoseOfCpp) {
 
 TEST(COverlaps, OfFrustumsAreThoseOfCpp) {
   test::for_each_subject([](const auto& subject, const auto* c_subject) {
-    using Functions = FunctionsOf<decltype(c_subject)>;
+    using Functions = OverlapsOf<decltype(c_subject)>;
     test::Randoms randoms(subject);
     std::size_t found = 0;
     test::for_each_limits(subject, [&](const bxt_limits* c, const auto&... limits) {

@@ -14,6 +14,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
+#include "tests/unit/c/copied_text.h"
 #include "tests/unit/c/subjects.h"
 
 namespace boxtree {
@@ -23,14 +24,6 @@ using test::Answer;
 using test::answer_of_c;
 using test::Numbers;
 using test::numbers_of;
-
-template <class Copy>
-std::string text_of(const Copy& copy) {
-  char text[64];
-  const std::size_t length = copy(text, sizeof text);
-  EXPECT_EQ(std::strlen(text), length);
-  return text;
-}
 
 // The answer of a function that returns a status alone.
 template <class Call>
@@ -52,13 +45,13 @@ TEST(CScenes, AreWhatCppSays) {
     EXPECT_EQ(bxt_scene_query_kinds(c_scene), scene.query_kinds());
     ASSERT_EQ(bxt_scene_layer_count(c_scene), scene.layer_count());
     for (std::uint32_t i = 0; i <= scene.layer_count(); ++i) {
-      EXPECT_EQ(
-          text_of([&](char* b, std::size_t n) { return bxt_scene_layer_name(c_scene, i, b, n); }),
-          scene.layer_name(i));
+      EXPECT_EQ(test::copied_text(
+                    [&](char* b, std::size_t n) { return bxt_scene_layer_name(c_scene, i, b, n); }),
+                scene.layer_name(i));
     }
     ASSERT_EQ(bxt_scene_material_count(c_scene), scene.material_count());
     for (std::uint32_t i = 0; i <= scene.material_count(); ++i) {
-      EXPECT_EQ(text_of([&](char* b, std::size_t n) {
+      EXPECT_EQ(test::copied_text([&](char* b, std::size_t n) {
                   return bxt_scene_material_name(c_scene, i, b, n);
                 }),
                 scene.material_name(i));
@@ -79,7 +72,7 @@ TEST(CScenes, AreWhatCppSays) {
                   return status;
                 }),
                 expected);
-      const std::string name = text_of(
+      const std::string name = test::copied_text(
           [&](char* b, std::size_t n) { return bxt_scene_instance_name(c_scene, i, b, n); });
       EXPECT_EQ(name, info ? info->name : "");
       names += !name.empty();

@@ -12,6 +12,7 @@
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
+#include "tests/unit/c/copied_text.h"
 #include "tests/unit/c/subjects.h"
 
 namespace boxtree {
@@ -22,29 +23,14 @@ using test::answer_of_c;
 using test::Numbers;
 using test::numbers_of;
 
-// A text that `copy(buffer, capacity)` copies, with every room for it.
-template <class Copy>
-std::string text_of(const Copy& copy) {
-  const std::size_t length = copy(nullptr, std::size_t{0});
-  std::string text(length + 1, '#');
-  EXPECT_EQ(copy(text.data(), length + 1), length);
-  EXPECT_EQ(text[length], '\0');
-  text.resize(length);
-  for (std::size_t room = 1; room <= length; ++room) {
-    std::string cut(length + 1, '#');
-    EXPECT_EQ(copy(cut.data(), room), length);
-    EXPECT_EQ(cut.substr(0, room), text.substr(0, room - 1) + '\0');
-    EXPECT_EQ(cut.substr(room), std::string(length + 1 - room, '#'));
-  }
-  return text;
-}
-
 TEST(CTrees, AreWhatCppSays) {
   std::size_t triangles = 0, materials = 0, numbers = 0;
   test::for_each_tree([&](const Tree& tree, const bxt_tree* c_tree) {
-    EXPECT_EQ(text_of([&](char* b, std::size_t n) { return bxt_tree_name(c_tree, b, n); }),
-              tree.name());
-    EXPECT_EQ(text_of([&](char* b, std::size_t n) { return bxt_tree_codec_name(c_tree, b, n); }),
+    EXPECT_EQ(
+        test::copied_text([&](char* b, std::size_t n) { return bxt_tree_name(c_tree, b, n); }),
+        tree.name());
+    EXPECT_EQ(test::copied_text(
+                  [&](char* b, std::size_t n) { return bxt_tree_codec_name(c_tree, b, n); }),
               tree.codec_name());
     EXPECT_EQ(bxt_tree_face_count(c_tree), tree.face_count());
     EXPECT_EQ(bxt_tree_triangle_count(c_tree), tree.triangle_count());
@@ -57,9 +43,10 @@ TEST(CTrees, AreWhatCppSays) {
     EXPECT_EQ(bxt_tree_prefetch(c_tree, 3), tree.prefetch(3));
     EXPECT_EQ(bxt_tree_material_count(c_tree), tree.material_count());
     for (std::uint32_t i = 0; i <= tree.material_count(); ++i) {
-      EXPECT_EQ(
-          text_of([&](char* b, std::size_t n) { return bxt_tree_material_name(c_tree, i, b, n); }),
-          tree.material_name(i));
+      EXPECT_EQ(test::copied_text([&](char* b, std::size_t n) {
+                  return bxt_tree_material_name(c_tree, i, b, n);
+                }),
+                tree.material_name(i));
     }
     for (std::uint32_t f = 0; f <= tree.face_count(); ++f) {
       const FaceRef face{f * 3 + 1, f};

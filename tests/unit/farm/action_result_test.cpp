@@ -8,10 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/farm/cache_values.h"
+
 namespace boxtree::cooker {
 namespace {
 
-const Digest kKey = sha256_of("key");
+using test::kKey;
 const CookCache::Entry kEntry{sha256_of("output"), 300, "[\"a warning\"]"};
 
 void expect_entry(const std::string& bytes) {

@@ -15,6 +15,7 @@
 
 #include "tests/support/require.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/farm/cache_values.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -22,8 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::require;
 
-constexpr std::uint64_t kRoom = std::uint64_t{1} << 40;
-const Digest kKey = sha256_of("key");
+using test::kKey;
+using test::kRoom;
 
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;

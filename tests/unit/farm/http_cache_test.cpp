@@ -19,6 +19,7 @@
 #include "cooker/farm/http_client.h"
 #include "tests/support/require.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/farm/cache_values.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -26,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::require;
 
-const Digest kKey = sha256_of("key");
+using test::kKey;
 const std::string kOutput(100000, 'o');
 constexpr const char* kReport = "[\"a report\"]";
 // Of tests that wait for a server which does not answer.

@@ -14,6 +14,7 @@
 
 #include "tests/support/require.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/farm/cache_values.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::require;
 
-const Digest kKey = sha256_of("key");
+using test::kKey;
 
 Journal::Entry entry_of(const std::string& bytes) {
   return {kKey, sha256_of(bytes), bytes.size()};

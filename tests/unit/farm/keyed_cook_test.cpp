@@ -11,6 +11,7 @@
 #include "cooker/farm/folder_cache.h"
 #include "tests/support/require.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/farm/cache_values.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 using How = KeyedOutcome::How;
 using test::require;
 
-constexpr std::uint64_t kRoom = std::uint64_t{1} << 40;
+using test::kRoom;
 constexpr const char* kMesh = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 constexpr const char* kOther = "mtllib m.mtl\nv 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n";
 

@@ -23,14 +23,10 @@
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/file/cooked_pages.h"
 
 namespace boxtree {
 namespace {
-
-std::string cooked_pages() {
-  const std::vector<std::byte> bytes = test::cook_bytes(test::terrain(60, 1), CodecId::kWide8);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 TEST(FileOpen, PipesAreRefusedWithoutWaiting) {
   const test::TempFolder folder;
@@ -65,7 +61,7 @@ MappedPages pages_of(const File& file) {
 
 TEST(FileAdvice, ReachesTheSystem) {
   const test::TempFolder folder;
-  const Result<File> file = File::open(folder.write("terrain.bxt", cooked_pages()));
+  const Result<File> file = File::open(folder.write("terrain.bxt", test::cooked_pages()));
   ASSERT_TRUE(file.ok());
   const auto flags_after = [&](Access access) {
     EXPECT_TRUE(file->advise(access));
@@ -79,7 +75,7 @@ TEST(FileAdvice, ReachesTheSystem) {
 
 TEST(FileAdvice, GivesMemoryBack) {
   const test::TempFolder folder;
-  const Result<File> file = File::open(folder.write("terrain.bxt", cooked_pages()));
+  const Result<File> file = File::open(folder.write("terrain.bxt", test::cooked_pages()));
   ASSERT_TRUE(file.ok() && verify_checksums(*file).ok());
   EXPECT_GE(pages_of(*file).resident_kilobytes, file->bytes().size() / 1024);
   EXPECT_TRUE(file->advise(Access::kDontNeed));
@@ -89,7 +85,7 @@ TEST(FileAdvice, GivesMemoryBack) {
 
 TEST(FileAdvice, LoadsTheFile) {
   const test::TempFolder folder;
-  const std::filesystem::path path = folder.write("terrain.bxt", cooked_pages());
+  const std::filesystem::path path = folder.write("terrain.bxt", test::cooked_pages());
   const Result<File> file = File::open(path);
   ASSERT_TRUE(file.ok());
   // Out of the page cache, from which no page goes that is mapped.
@@ -120,7 +116,7 @@ TEST(FileAdvice, LoadsTheFile) {
 // What a file is mapped from moves with it.
 TEST(FileAdvice, FollowsAFileThatMoves) {
   const test::TempFolder folder;
-  const std::string whole = cooked_pages();
+  const std::string whole = test::cooked_pages();
   Result<File> mapped = File::open(folder.write("terrain.bxt", whole));
   OpenOptions options;
   options.copy = true;

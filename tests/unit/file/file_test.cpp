@@ -12,6 +12,7 @@
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/file/cooked_pages.h"
 
 namespace boxtree {
 namespace {
@@ -113,15 +114,10 @@ TEST(FileOpen, ACopyOutlivesItsFile) {
 constexpr Access kEveryAccess[] = {Access::kRandom, Access::kSequential, Access::kNormal,
                                    Access::kWillNeed, Access::kDontNeed};
 
-std::string cooked_pages() {
-  const std::vector<std::byte> bytes = test::cook_bytes(test::terrain(60, 1), CodecId::kWide8);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 // The system would take kDontNeed of a copy, too, and its bytes would be zeros afterwards.
 TEST(FileAdvice, DoesNothingInMemory) {
   const test::TempFolder folder;
-  const std::string whole = cooked_pages();
+  const std::string whole = test::cooked_pages();
   OpenOptions copy;
   copy.copy = true;
   for (const Result<File>& opened : {File::open(folder.write("terrain.bxt", whole).string(), copy),

@@ -9,11 +9,12 @@
 #include "format/limits.h"
 #include "format/scene_record.h"
 #include "format/tree_record.h"
+#include "tests/support/infinity.h"
 
 namespace boxtree {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TreeRecord sound_tree() {

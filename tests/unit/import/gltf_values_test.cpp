@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 // Two nodes with a triangle of 3 of 4 vertices, the fourth behind every vertex.
-Json document() {
+Json two_triangles() {
   return Json::parse(R"({
     "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"children": [1], "rotation": [0, 0, 0.7071, 0.7071]},
@@ -38,16 +38,16 @@ std::string fault(const Json& json) {
 
 // Of the document with `value` at `place`.
 std::string fault(const char* place, const char* value) {
-  Json json = document();
+  Json json = two_triangles();
   json[Json::json_pointer(place)] = Json::parse(value);
   return fault(json);
 }
 
 TEST(GltfValues, TheSpecificationsArePassed) {
-  EXPECT_EQ(fault(document()), "");
+  EXPECT_EQ(fault(two_triangles()), "");
   EXPECT_EQ(fault("/nodes/0/matrix", "[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]"), "");
   EXPECT_EQ(fault("/meshes/0/primitives/0/mode", "6"), "");
-  Json compressed = document();
+  Json compressed = two_triangles();
   for (Json& accessor : compressed["accessors"]) accessor.erase("bufferView");
   EXPECT_EQ(fault(compressed),
             "accessor 0: bufferView: expected one, without which all are zeros, found none");
@@ -111,7 +111,7 @@ TEST(GltfValues, PrimitivesHavePositions) {
 
 // Of fewer assimp took two from their number: 2^32 faces, for which there was no memory.
 TEST(GltfValues, StripsHaveCorners) {
-  Json json = document();
+  Json json = two_triangles();
   json["meshes"][0]["primitives"][0]["mode"] = 5u;
   EXPECT_EQ(fault(json), "");
   json["accessors"][1]["count"] = 2u;
@@ -153,7 +153,7 @@ TEST(GltfValues, NothingIsReadPastItsBuffer) {
 
 TEST(GltfValues, SparseAccessorsHaveTheirBytes) {
   const auto sparse = [](const char* count, const char* indices, const char* values) {
-    Json json = document();
+    Json json = two_triangles();
     json["accessors"][0]["sparse"] = {{"count", Json::parse(count)},
                                       {"indices", Json::parse(indices)},
                                       {"values", Json::parse(values)}};

@@ -10,7 +10,7 @@ namespace {
 
 using ImportErrorTest = ImportTest;
 
-constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+constexpr std::string_view kVerticesOfOne = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 TEST_F(ImportErrorTest, FilesThatCannotBeRead) {
   const Result<Imported> missing = import_mesh(folder_ / "none.obj");
@@ -155,7 +155,7 @@ TEST_F(ImportErrorTest, ACutFileIsToldSo) {
   EXPECT_TRUE(has(cut(50), "the header has no 'end_header' behind it, as if the file was cut"));
 
   // The last word or line of a text without an end.
-  const std::string obj(kTriangle);
+  const std::string obj(kVerticesOfOne);
   for (const char* const half : {"v 1", "v 1 2 -", "v 1 2 1e", "f 1 2 -", "f 1 2 3 -", "\1"}) {
     EXPECT_TRUE(has(fail("cut.obj", obj + "f 1 2 3\n" + half).detail, ", as if the file was cut"));
     EXPECT_FALSE(has(fail("a.obj", obj + "f 1 2 3\n" + half + "\n").detail, "cut short")) << half;
@@ -176,24 +176,24 @@ TEST_F(ImportErrorTest, ACutFileIsToldSo) {
 
 // It was counted among points and lines.
 TEST_F(ImportErrorTest, TheHalfFaceOfACutObjIsNoLine) {
-  const std::string whole = std::string(kTriangle) + "f 1 2 3\nf 3 2 1\n";
+  const std::string whole = std::string(kVerticesOfOne) + "f 1 2 3\nf 3 2 1\n";
   for (const std::size_t bytes : {2u, 4u, 5u}) {
     const Imported cut = load("cut.obj", whole.substr(0, whole.size() - 1 - bytes));
     EXPECT_EQ(cut.mesh.faces.size(), 1u) << bytes;
     EXPECT_TRUE(cut.report.has_half_face) << bytes;
     EXPECT_EQ(cut.report.lines_skipped + cut.report.points_skipped + cut.report.empty_skipped, 0u);
   }
-  const Imported line = load("line.obj", std::string(kTriangle) + "f 1 2 3\nf 3 2\n");
+  const Imported line = load("line.obj", std::string(kVerticesOfOne) + "f 1 2 3\nf 3 2\n");
   EXPECT_FALSE(line.report.has_half_face);
   EXPECT_EQ(line.report.lines_skipped, 1u);
 }
 
 TEST_F(ImportErrorTest, NoFaces) {
   EXPECT_EQ(fail("a.obj", "# nothing at all, but long enough\n").code, Errc::kNoFaces);
-  const Error points = fail("points.obj", kTriangle);
+  const Error points = fail("points.obj", kVerticesOfOne);
   EXPECT_EQ(points.code, Errc::kNoFaces);
   EXPECT_TRUE(has(points.detail, "3 vertices that no face uses"));
-  const Error lines = fail("lines.obj", std::string(kTriangle) + "l 1 2 3\n");
+  const Error lines = fail("lines.obj", std::string(kVerticesOfOne) + "l 1 2 3\n");
   EXPECT_EQ(lines.code, Errc::kNoFaces);
   EXPECT_TRUE(has(lines.detail, "2 lines"));
   EXPECT_EQ(fail("points.ply",
@@ -242,7 +242,7 @@ TEST_F(ImportErrorTest, IndexOutOfRangeInPly) {
 
 // Assimp refuses such OBJ files without a place, and numbers the vertices of OBJ files anew.
 TEST_F(ImportErrorTest, ObjFaultsCountFromZeroAndQuoteTheFile) {
-  const std::string obj = std::string(kTriangle) +
+  const std::string obj = std::string(kVerticesOfOne) +
                           "v 0 0 nan\n"       // 4, line 4
                           "f 1 2 3\n"         // 0
                           "f 1/1/1 2 9/1\n"   // 1, line 6
@@ -258,7 +258,7 @@ TEST_F(ImportErrorTest, ObjFaultsCountFromZeroAndQuoteTheFile) {
                   "face 1: corner 2 (line 6) says '9/1', but OBJ counts the 5 vertices from 1"));
   // Found by a newcomer: 'x' was not one of the vertices.
   for (const std::string word : {"x", "3.5", "3/x", "99999999999999999999"}) {
-    EXPECT_TRUE(has(fail("b.obj", std::string(kTriangle) + "f 1 2 " + word + "\n").detail,
+    EXPECT_TRUE(has(fail("b.obj", std::string(kVerticesOfOne) + "f 1 2 " + word + "\n").detail,
                     "says '" + word + "', which is no number of a vertex"))
         << word;
   }
@@ -279,7 +279,7 @@ TEST_F(ImportErrorTest, ObjFaultsCountFromZeroAndQuoteTheFile) {
 
 TEST_F(ImportErrorTest, NothingLeftIsNoFaces) {
   const Error error =
-      fail("a.obj", std::string(kTriangle) + "f 1 2 4\nf 1 2 5\n", {.skip_bad = true});
+      fail("a.obj", std::string(kVerticesOfOne) + "f 1 2 4\nf 1 2 5\n", {.skip_bad = true});
   EXPECT_EQ(error.code, Errc::kNoFaces);
   EXPECT_TRUE(has(error.detail, "all 2 faces are bad"));
 }

@@ -11,7 +11,7 @@ namespace boxtree::cooker {
 namespace {
 
 using ImportMeshTest = ImportTest;
-using Corners = std::array<std::uint32_t, 4>;
+using MeshCorners = std::array<std::uint32_t, 4>;
 
 TEST_F(ImportMeshTest, TriangleKeepsItsBits) {
   const Imported got = load("a.obj", "v 0.1 -0 1e-30\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -20,7 +20,7 @@ TEST_F(ImportMeshTest, TriangleKeepsItsBits) {
   ASSERT_EQ(got.mesh.positions.f32.size(), 9u);
   EXPECT_EQ(got.mesh.positions.f32[0], 0.1f);
   EXPECT_TRUE(std::signbit(got.mesh.positions.f32[1]));
-  EXPECT_EQ(got.mesh.faces[0].corner, (Corners{0, 1, 2, kNoCorner}));
+  EXPECT_EQ(got.mesh.faces[0].corner, (MeshCorners{0, 1, 2, kNoCorner}));
   EXPECT_TRUE(got.mesh.face_ids.empty());
   EXPECT_EQ(got.report.meshes, 1u);
 }
@@ -60,8 +60,8 @@ TEST_F(ImportMeshTest, WeldsBitsAndKeepsTheOrderOfTheSource) {
   EXPECT_EQ(got.report.vertices_unused, 1u) << "9 9 9";
   EXPECT_EQ(got.report.vertices_welded, 1u) << "1 0 0";
   ASSERT_EQ(got.mesh.positions.size(), 5u) << "+0 and -0 differ";
-  EXPECT_EQ(got.mesh.faces[0].corner, (Corners{4, 1, 2, kNoCorner}));
-  EXPECT_EQ(got.mesh.faces[1].corner, (Corners{1, 0, 3, kNoCorner}));
+  EXPECT_EQ(got.mesh.faces[0].corner, (MeshCorners{4, 1, 2, kNoCorner}));
+  EXPECT_EQ(got.mesh.faces[1].corner, (MeshCorners{1, 0, 3, kNoCorner}));
 }
 
 // One triangle at (0,0,0) (1,0,0) (0,1,0), placed by two nodes under a parent.
@@ -88,7 +88,7 @@ TEST_F(ImportMeshTest, InstancesAndNestedTransforms) {
 
 TEST_F(ImportMeshTest, MirroredInstanceStillFacesOutward) {
   const Imported got = load("a.gltf", gltf(R"({"mesh":0,"scale":[1,1,-1]})"));
-  EXPECT_EQ(got.mesh.faces[0].corner, (Corners{0, 2, 1, kNoCorner}));
+  EXPECT_EQ(got.mesh.faces[0].corner, (MeshCorners{0, 2, 1, kNoCorner}));
 }
 
 TEST_F(ImportMeshTest, TransformsAreRoundedOnceToF32AndKeptInF64) {

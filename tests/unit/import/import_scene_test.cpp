@@ -13,11 +13,11 @@
 namespace boxtree::cooker {
 namespace {
 
-using Corners = std::array<std::uint32_t, 4>;
+using SceneCorners = std::array<std::uint32_t, 4>;
 using Rows = std::array<double, 12>;
 using Runs = std::vector<std::array<std::uint32_t, 2>>;
 
-const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+const std::vector<float> kPositions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 const std::vector<float> kOther = {0, 0, 0, 3, 0, 0, 0, 0, 3, 3, 0, 0, 3, 0, 3, 0, 0, 3};
 const std::vector<float> kSecondBad = {
     0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, std::numeric_limits<float>::quiet_NaN(), 0, 0, 0, 1, 0};
@@ -94,7 +94,7 @@ std::vector<std::uint32_t> meshes_of(const SourceScene& scene) {
 
 TEST_F(ImportSceneTest, PosesAreProductsFromTheRootDown) {
   GltfText gltf;
-  gltf.add_mesh("tri", {{kTriangle}});
+  gltf.add_mesh("tri", {{kPositions}});
   const SourceScene got =
       scene("yard.gltf",
             gltf.text(R"({"children":[1,2,3,4],"translation":[10,0,0]},)"
@@ -115,8 +115,8 @@ TEST_F(ImportSceneTest, PosesAreProductsFromTheRootDown) {
 
   ASSERT_EQ(got.meshes.size(), 1u);
   EXPECT_EQ(got.meshes[0].mesh.name, "tri");
-  EXPECT_EQ(got.meshes[0].mesh.positions.f32, kTriangle) << "in its own space";
-  EXPECT_EQ(got.meshes[0].mesh.faces[0].corner, (Corners{0, 1, 2, kNoCorner}));
+  EXPECT_EQ(got.meshes[0].mesh.positions.f32, kPositions) << "in its own space";
+  EXPECT_EQ(got.meshes[0].mesh.faces[0].corner, (SceneCorners{0, 1, 2, kNoCorner}));
   EXPECT_EQ(got.report.meshes, 1u);
   EXPECT_EQ(got.report.source_faces, 1u) << "counted once";
   EXPECT_NE(got.report.content_hash, 0u);
@@ -126,7 +126,7 @@ TEST_F(ImportSceneTest, PosesAreProductsFromTheRootDown) {
 
 TEST_F(ImportSceneTest, PosesAreInDoubleInBothPrecisions) {
   GltfText gltf;
-  gltf.add_mesh("tri", {{kTriangle}});
+  gltf.add_mesh("tri", {{kPositions}});
   // 1 + 2^24 needs 25 bits.
   const std::string text = gltf.text(R"({"translation":[16777216,0,0],"children":[1,2]},)"
                                      R"({"mesh":0,"translation":[1,0,0]},{"mesh":0})");
@@ -137,18 +137,18 @@ TEST_F(ImportSceneTest, PosesAreInDoubleInBothPrecisions) {
   ASSERT_EQ(wide.meshes.size(), 1u);
   EXPECT_EQ(wide.instances[0].pose.translation().x(), 16777217.0);
   EXPECT_EQ(wide.meshes[0].mesh.positions.f64,
-            (std::vector<double>(kTriangle.begin(), kTriangle.end())));
+            (std::vector<double>(kPositions.begin(), kPositions.end())));
   EXPECT_TRUE(wide.meshes[0].mesh.positions.f32.empty());
 }
 
 TEST_F(ImportSceneTest, EqualContentIsStoredOnce) {
-  std::vector<float> turned = kTriangle, minus_zero = kTriangle;
+  std::vector<float> turned = kPositions, minus_zero = kPositions;
   std::rotate(turned.begin(), turned.begin() + 3, turned.end());
   minus_zero[0] = -0.0f;
   GltfText gltf;
-  gltf.add_mesh("first", {{kTriangle}});
+  gltf.add_mesh("first", {{kPositions}});
   gltf.add_mesh("other", {{kOther}});
-  gltf.add_mesh("again", {{kTriangle}});
+  gltf.add_mesh("again", {{kPositions}});
   gltf.add_mesh("turned", {{turned}});
   gltf.add_mesh("minus zero", {{minus_zero}});
   const SourceScene got =
@@ -167,10 +167,10 @@ TEST_F(ImportSceneTest, EqualContentIsStoredOnce) {
 
 TEST_F(ImportSceneTest, PrimitivesAreRunsOfMaterials) {
   GltfText gltf;
-  gltf.add_mesh("car", {{kOther, 2}, {kTriangle, 0}, {kTriangle, 0}, {kOther, -1}});
-  gltf.add_mesh("lamp", {{kTriangle, 1}});
-  gltf.add_mesh("lamp of other material", {{kTriangle, 0}});
-  gltf.add_mesh("lamp again", {{kTriangle, 1}});
+  gltf.add_mesh("car", {{kOther, 2}, {kPositions, 0}, {kPositions, 0}, {kOther, -1}});
+  gltf.add_mesh("lamp", {{kPositions, 1}});
+  gltf.add_mesh("lamp of other material", {{kPositions, 0}});
+  gltf.add_mesh("lamp again", {{kPositions, 1}});
   const SourceScene got = scene(
       "a.gltf", gltf.text(R"({"children":[1,2,3,4]},{"mesh":0},{"mesh":1},{"mesh":2},{"mesh":3})",
                           R"({"name":"steel"},{},{"name":"paint"},{"name":"nowhere"})"));
@@ -192,8 +192,8 @@ TEST_F(ImportSceneTest, PrimitivesAreRunsOfMaterials) {
 
 TEST_F(ImportSceneTest, MaterialsOfOneNameAreOne) {
   GltfText gltf;
-  gltf.add_mesh("a", {{kTriangle, 0}, {kTriangle, 1}});
-  gltf.add_mesh("b", {{kTriangle, 1}, {kTriangle, 0}});
+  gltf.add_mesh("a", {{kPositions, 0}, {kPositions, 1}});
+  gltf.add_mesh("b", {{kPositions, 1}, {kPositions, 0}});
   const SourceScene got = scene("a.gltf", gltf.text(R"({"children":[1,2]},{"mesh":0},{"mesh":1})",
                                                     R"({"name":"steel"},{"name":"steel"})"));
   EXPECT_EQ(got.materials, std::vector<std::string>{"steel"});
@@ -203,7 +203,7 @@ TEST_F(ImportSceneTest, MaterialsOfOneNameAreOne) {
 
 TEST_F(ImportSceneTest, NoMaterialsWhereTheFileHasNone) {
   GltfText gltf;
-  gltf.add_mesh("a", {{kTriangle}, {kOther}});
+  gltf.add_mesh("a", {{kPositions}, {kOther}});
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (const SourceScene& got :
        {scene("a.gltf", gltf.text(R"({"mesh":0})")), scene("a.obj", triangle + "f 1 2 3\n")}) {
@@ -217,7 +217,7 @@ TEST_F(ImportSceneTest, NoMaterialsWhereTheFileHasNone) {
 
 TEST_F(ImportSceneTest, MaterialsWithoutNamesStayApart) {
   GltfText gltf;
-  gltf.add_mesh("a", {{kTriangle, 0}, {kOther, 1}});
+  gltf.add_mesh("a", {{kPositions, 0}, {kOther, 1}});
   const SourceScene got = scene("a.gltf", gltf.text(R"({"mesh":0})", "{},{}"));
   EXPECT_EQ(got.materials, (std::vector<std::string>{"material 0", "material 1"}));
   ASSERT_EQ(got.meshes.size(), 1u);
@@ -226,7 +226,7 @@ TEST_F(ImportSceneTest, MaterialsWithoutNamesStayApart) {
 
 TEST_F(ImportSceneTest, MissingNamesAreNoError) {
   GltfText gltf;
-  gltf.add_mesh("", {{kTriangle}});
+  gltf.add_mesh("", {{kPositions}});
   const SourceScene got =
       scene("a.gltf", gltf.text(R"({"children":[1,2,3]},{"mesh":0},{"mesh":0,"name":"n"},)"
                                 R"({"mesh":0,"name":"n","translation":[1,0,0]})"));
@@ -299,13 +299,13 @@ TEST_F(ImportSceneTest, OurOwnReadersGiveOneInstance) {
   };
   put(std::uint32_t{1});
   for (int i = 0; i < 3; ++i) put(0.0f);
-  for (const float coordinate : kTriangle) put(coordinate);
+  for (const float coordinate : kPositions) put(coordinate);
   put(std::uint16_t{0});
   const SourceScene got = scene("bolt.stl", stl);
   EXPECT_EQ(got.name, "bolt");
   EXPECT_EQ(names_of(got), std::vector<std::string>{"bolt"});
   ASSERT_EQ(got.meshes.size(), 1u);
-  EXPECT_EQ(got.meshes[0].mesh.positions.f32, kTriangle);
+  EXPECT_EQ(got.meshes[0].mesh.positions.f32, kPositions);
   EXPECT_EQ(got.meshes[0].mesh.name, "bolt");
   EXPECT_EQ(got.meshes[0].source_faces, 1u);
   EXPECT_TRUE(got.materials.empty());
@@ -313,8 +313,8 @@ TEST_F(ImportSceneTest, OurOwnReadersGiveOneInstance) {
 
 TEST_F(ImportSceneTest, NodesWithoutFacesAreLeftOut) {
   GltfText gltf;
-  gltf.add_mesh("points", {{kTriangle, -1, 0}});
-  gltf.add_mesh("tri", {{kTriangle}});
+  gltf.add_mesh("points", {{kPositions, -1, 0}});
+  gltf.add_mesh("tri", {{kPositions}});
   const SourceScene got =
       scene("a.gltf", gltf.text(R"({"children":[1,2,3]},{"mesh":0,"scale":[0,0,0]},)"
                                 R"({"mesh":1,"name":"n"},{"name":"empty"})"));
@@ -327,7 +327,7 @@ TEST_F(ImportSceneTest, NodesWithoutFacesAreLeftOut) {
 
 TEST_F(ImportSceneTest, BadFacesNameTheirMesh) {
   GltfText gltf;
-  gltf.add_mesh("good", {{kTriangle}});
+  gltf.add_mesh("good", {{kPositions}});
   gltf.add_mesh("half", {{kSecondBad}});
   gltf.add_mesh("half again", {{kSecondBad}});
   gltf.add_mesh("lost", {{{kSecondBad.begin() + 9, kSecondBad.end()}}});
@@ -360,7 +360,7 @@ TEST_F(ImportSceneTest, BadFacesNameTheirMesh) {
 // Found by a newcomer: that a mesh has such a node was told as a mistake in the command.
 TEST_F(ImportSceneTest, PosesThatCannotBeInvertedAreNamed) {
   GltfText gltf;
-  gltf.add_mesh("tri", {{kTriangle}});
+  gltf.add_mesh("tri", {{kPositions}});
   const auto placed = [&gltf](const std::string& how) {
     return gltf.text(R"({"children":[1,2]},{"mesh":0},{"mesh":0,"name":"wheel",)" + how + "}");
   };
@@ -380,11 +380,11 @@ TEST_F(ImportSceneTest, PosesThatCannotBeInvertedAreNamed) {
 // to some above them.
 TEST_F(ImportSceneTest, AcceptsThePosesThatContactsAccept) {
   SourceMesh mesh;
-  mesh.positions.f32 = kTriangle;
+  mesh.positions.f32 = kPositions;
   mesh.faces = {{{0, 1, 2, kNoCorner}}};
   const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kPlainF32);
   GltfText gltf;
-  gltf.add_mesh("tri", {{kTriangle}});
+  gltf.add_mesh("tri", {{kPositions}});
   constexpr int kNodes = 9;
   int accepted = 0, refused = 0;
   for (int exponent = -120; exponent <= 120; ++exponent) {
@@ -416,8 +416,8 @@ TEST_F(ImportSceneTest, AcceptsThePosesThatContactsAccept) {
 
 TEST_F(ImportSceneTest, FileIsASceneWhenItPlacesSeveral) {
   GltfText gltf;
-  gltf.add_mesh("tri", {{kTriangle}, {kOther}});
-  gltf.add_mesh("points", {{kTriangle, -1, 0}});
+  gltf.add_mesh("tri", {{kPositions}, {kOther}});
+  gltf.add_mesh("points", {{kPositions, -1, 0}});
   const auto is_scene = [this](const std::string& name, const std::string& text) {
     const Result<ImportedFile> got = import_file(write(name, text));
     EXPECT_TRUE(got.ok()) << got.error().message();

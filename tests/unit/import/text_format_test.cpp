@@ -122,7 +122,7 @@ TEST_F(TextFormatTest, StlClosesEveryFacetAndSolid) {
 
 // All that follows was found by tests/import_oracle.
 
-const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string kThreeVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string kPlyBody = "0 0 0\n1 0 0\n0 1 0\n";
 
 std::string ply_of(const std::string& vertex, const std::string& behind = "") {
@@ -169,7 +169,8 @@ TEST_F(TextFormatTest, NumbersBeyondFloatsAreNotFinite) {
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
   const std::string body = "0 0 730000000000000000000000000000000000000\n1 0 0\n0 1 0\n3 0 1 2\n";
   EXPECT_EQ(fail("a.ply", ply_of("element vertex 3\n" + xyz) + body).code, Errc::kMeshNotFinite);
-  EXPECT_EQ(fail("b.obj", "v 0 0 1e99999\n" + kVertices + "f 1 2 3\n").code, Errc::kMeshNotFinite);
+  EXPECT_EQ(fail("b.obj", "v 0 0 1e99999\n" + kThreeVertices + "f 1 2 3\n").code,
+            Errc::kMeshNotFinite);
   // ... and those too small for them are zero.
   expect_triangle("c.obj",
                   "v 0 1e-99999 0." + std::string(6000, '0') + "1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
@@ -178,7 +179,7 @@ TEST_F(TextFormatTest, NumbersBeyondFloatsAreNotFinite) {
 
 TEST_F(TextFormatTest, NumbersEndWhereTheirWordsDo) {
   for (const char* word : {"1.0f", "1,5", "0x10", "1.2.3", "1-2", "1\\2", "--1", "+-1", "1e"}) {
-    const std::string text = std::string("v ") + word + " 0 0\n" + kVertices + "f 1 2 3\n";
+    const std::string text = std::string("v ") + word + " 0 0\n" + kThreeVertices + "f 1 2 3\n";
     EXPECT_TRUE(has(fail("a.obj", text).detail, "is no number")) << word;
   }
   EXPECT_TRUE(
@@ -187,30 +188,30 @@ TEST_F(TextFormatTest, NumbersEndWhereTheirWordsDo) {
 
 TEST_F(TextFormatTest, CornersOfObjAreNumbersHoweverSpelled) {
   for (const char* face : {"f 01 +2 03", "f -03 -2 3", "f +1 2/ 3//", "f 1/9/9 2/-9/9 3/9/-9"}) {
-    expect_triangle("a.obj", kVertices + "vt 0 0\nvn 0 0 1\n" + face + "\n", corners_);
+    expect_triangle("a.obj", kThreeVertices + "vt 0 0\nvn 0 0 1\n" + face + "\n", corners_);
   }
-  EXPECT_EQ(fail("b.obj", kVertices + "f 1 2//1 3//-\x12\n").code, Errc::kMeshIndexOutOfRange);
-  EXPECT_EQ(fail("c.obj", kVertices + "f 1 2 3\nf -inf 2\n").code, Errc::kMeshIndexOutOfRange);
+  EXPECT_EQ(fail("b.obj", kThreeVertices + "f 1 2//1 3//-\x12\n").code, Errc::kMeshIndexOutOfRange);
+  EXPECT_EQ(fail("c.obj", kThreeVertices + "f 1 2 3\nf -inf 2\n").code, Errc::kMeshIndexOutOfRange);
 }
 
 TEST_F(TextFormatTest, CommentsBehindNormalsEndWithTheirLine) {
   for (const char* statement : {"vn 0 0 1 # C:\\", "vt 0 0 # C:\\", "s 1 # C:\\"}) {
-    expect_triangle("a.obj", kVertices + statement + "\nf 1 2 3\n", corners_);
+    expect_triangle("a.obj", kThreeVertices + statement + "\nf 1 2 3\n", corners_);
   }
 }
 
 // Found by a newcomer: "fo", the name of "f" in files of version 2, was no face.
 TEST_F(TextFormatTest, OldFacesOfObjAreFaces) {
-  const Imported got = load("a.obj", kVertices + "fo 1 2 3 # a\nfo 1 3 \\\n2\nf 2 3 1\n");
+  const Imported got = load("a.obj", kThreeVertices + "fo 1 2 3 # a\nfo 1 3 \\\n2\nf 2 3 1\n");
   EXPECT_EQ(got.mesh.faces.size(), 3u);
   EXPECT_TRUE(got.report.unread.empty());
-  EXPECT_EQ(load("b.obj", kVertices + "f 1 2 3\nfoo 1 3 2\nfo\n").mesh.faces.size(), 1u);
+  EXPECT_EQ(load("b.obj", kThreeVertices + "f 1 2 3\nfoo 1 3 2\nfo\n").mesh.faces.size(), 1u);
 }
 
 // Found by a newcomer: free-form surfaces and unknown statements were lost in silence.
 TEST_F(TextFormatTest, StatementsOfObjThatAreNotReadAreReported) {
   const Imported got =
-      load("a.obj", kVertices +
+      load("a.obj", kThreeVertices +
                         "vt 0 0\nvn 0 0 1\nvp 0\ng a\no a\ns 1\nmg 1 2\nusemtl a\nlod 1\n"
                         "f 1 2 3\nl 1 2\np 1\ncstype bezier\ndeg 1\nsurf 0 1 0 1 1 2 3\nend\n"
                         "surf 0 1 0 1 \\\n1 2 3\nface 1 2 3\nend");
@@ -223,7 +224,7 @@ TEST_F(TextFormatTest, StatementsOfObjThatAreNotReadAreReported) {
 }
 
 TEST_F(TextFormatTest, FewStatementsOfObjThatAreNotReadAreListed) {
-  std::string text = kVertices + "f 1 2 3\n";
+  std::string text = kThreeVertices + "f 1 2 3\n";
   for (int i = 0; i < 100; ++i) text += fmt::format("x{}\nx0\n", i);
   const std::vector<Unread> unread = load("a.obj", text).report.unread;
   ASSERT_EQ(unread.size(), 33u);
@@ -236,7 +237,7 @@ TEST_F(TextFormatTest, FewStatementsOfObjThatAreNotReadAreListed) {
 
 // Found by a newcomer: the faces of another file were lost in silence.
 TEST_F(TextFormatTest, CallsOfObjAreRefused) {
-  const Error error = fail("a.obj", kVertices + "f 1 2 3\ncall other.obj\n");
+  const Error error = fail("a.obj", kThreeVertices + "f 1 2 3\ncall other.obj\n");
   EXPECT_EQ(error.code, Errc::kImportFailed);
   EXPECT_TRUE(has(error.detail, "line 5: 'call' reads another file here, other.obj; write the"));
 }
@@ -276,7 +277,7 @@ TEST_F(TextFormatTest, WhatFollowsTheLastElementIsReported) {
 }
 
 TEST_F(TextFormatTest, FacesBeforeTheFirstMaterialHaveNone) {
-  const auto path = write("a.obj", kVertices + "f 1 2 3\nusemtl red\nf 1 3 2\n");
+  const auto path = write("a.obj", kThreeVertices + "f 1 2 3\nusemtl red\nf 1 3 2\n");
   const Result<SourceScene> scene = import_scene(path);
   ASSERT_TRUE(scene.ok()) << scene.error().detail;
   ASSERT_EQ(scene->meshes.size(), 1u);
@@ -311,9 +312,9 @@ TEST_F(TextFormatTest, NothingStandsBetweenFacetsOfStl) {
 
 TEST_F(TextFormatTest, ZeroBytesAreNoText) {
   using namespace std::string_literals;
-  EXPECT_TRUE(has(fail("a.obj", kVertices + "f 1 2\0 3\n"s).detail, "line 4: a zero byte"));
+  EXPECT_TRUE(has(fail("a.obj", kThreeVertices + "f 1 2\0 3\n"s).detail, "line 4: a zero byte"));
   EXPECT_TRUE(has(fail("b.off", "OFF\n3 1 0\n0 0 0\0\n1 0 0\n0 1 0\n3 0 1 2\n"s).detail, "line 3"));
-  expect_triangle("c.obj", kVertices + "f 1 2 3\n\0\0\0"s, corners_);
+  expect_triangle("c.obj", kThreeVertices + "f 1 2 3\n\0\0\0"s, corners_);
 }
 
 TEST_F(TextFormatTest, VerticesOfOffHaveAllTheirNumbers) {
@@ -340,7 +341,7 @@ TEST_F(TextFormatTest, LinesOfOffMeanNothingButBehindColors) {
 
 TEST_F(TextFormatTest, CornersOfObjHaveThreeNumbersAtMost) {
   for (const char* corner : {"1/1/1/1", "+-1", "1/x", "1//2/"}) {
-    const Error error = fail("a.obj", kVertices + "f " + corner + " 2 3\n");
+    const Error error = fail("a.obj", kThreeVertices + "f " + corner + " 2 3\n");
     EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange) << corner;
     EXPECT_TRUE(has(error.detail, "corner 0 (line 4) says '" + std::string(corner) + "'"));
   }
@@ -348,7 +349,7 @@ TEST_F(TextFormatTest, CornersOfObjHaveThreeNumbersAtMost) {
 
 // Objects and groups that are taken up again do not change the order of faces.
 TEST_F(TextFormatTest, FacesOfObjKeepTheirOrder) {
-  const Imported got = load("a.obj", kVertices + "v 0 0 1\no a\nf 1 2 3\no b\nf 1 2 4\no a\n" +
+  const Imported got = load("a.obj", kThreeVertices + "v 0 0 1\no a\nf 1 2 3\no b\nf 1 2 4\no a\n" +
                                          "usemtl x\nf 1 3 4\ng b\nf 4 3 2\n");
   ASSERT_EQ(got.mesh.faces.size(), 4u);
   const std::array<std::array<std::uint32_t, 3>, 4> expected = {

@@ -17,10 +17,10 @@ namespace {
 using UserDataTest = ImportTest;
 using Numbers = std::vector<std::uint32_t>;
 
-const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+const std::vector<float> kPositionsOfOne = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 const std::vector<float> kTwo = {0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 1, 2, 0, 1, 0, 2, 1};
 
-ImportOptions with(const std::string& property) {
+ImportOptions with_data(const std::string& property) {
   ImportOptions options;
   options.user_data = property;
   return options;
@@ -39,17 +39,17 @@ Numbers numbers_of(const Imported& imported) {
   return numbers;
 }
 
-constexpr const char* kVertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n2 1 5\n3 0 0\n";
+constexpr const char* kSevenVertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n2 1 5\n3 0 0\n";
 
 // A PLY text, a row of `faces` each with its number before and after the corners.
-std::string text_ply(const std::string& type, const std::vector<std::string>& faces) {
+std::string ply_with_data(const std::string& type, const std::vector<std::string>& faces) {
   std::string text =
       "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\n"
       "property float z\nelement face " +
       std::to_string(faces.size()) + "\nproperty " + type +
       " zone\nproperty list uchar int vertex_indices\n"
       "property float heat\nend_header\n";
-  text += kVertices;
+  text += kSevenVertices;
   for (const std::string& face : faces) text += face + "\n";
   return text;
 }
@@ -61,24 +61,27 @@ TEST_F(UserDataTest, IsThePropertyOfEachFaceAndOfItsParts) {
                                           "300 4 1 4 5 2 0.5",      // one that is not planar, split
                                           "70000 5 0 1 4 2 3 0.5",  // split
                                           "7 3 4 6 5 0.5"};
-  const Imported imported = load("a.ply", text_ply("int", faces), with("zone"));
+  const Imported imported = load("a.ply", ply_with_data("int", faces), with_data("zone"));
   EXPECT_EQ(numbers_of(imported), (Numbers{7, 300, 300, 300, 70000, 70000, 70000, 7}));
   EXPECT_EQ(imported.user_data, (std::vector<FaceRun>{{0, 7}, {1, 300}, {3, 70000}, {4, 7}}));
-  EXPECT_TRUE(load("a.ply", text_ply("int", faces)).user_data.empty());
+  EXPECT_TRUE(load("a.ply", ply_with_data("int", faces)).user_data.empty());
 }
 
 TEST_F(UserDataTest, BelowZeroIsTheSame32Bits) {
-  const Imported imported = load(
-      "a.ply", text_ply("int", {"-1 3 0 1 2 0", "-2147483648 3 0 2 3 0", "2147483647 3 1 4 5 0"}),
-      with("zone"));
+  const Imported imported =
+      load("a.ply",
+           ply_with_data("int", {"-1 3 0 1 2 0", "-2147483648 3 0 2 3 0", "2147483647 3 1 4 5 0"}),
+           with_data("zone"));
   EXPECT_EQ(numbers_of(imported), (Numbers{0xffffffffu, 0x80000000u, 0x7fffffffu}));
-  const Imported large = load("a.ply", text_ply("uint", {"4294967295 3 0 1 2 0"}), with("zone"));
+  const Imported large =
+      load("a.ply", ply_with_data("uint", {"4294967295 3 0 1 2 0"}), with_data("zone"));
   EXPECT_EQ(numbers_of(large), Numbers{0xffffffffu});
 }
 
 TEST_F(UserDataTest, OfTextIsAnIntegerOf32Bits) {
   for (const std::string word : {"1.5", "4294967296", "-2147483649"}) {
-    const Error error = fail("a.ply", text_ply("int", {word + " 3 0 1 2 0"}), with("zone"));
+    const Error error =
+        fail("a.ply", ply_with_data("int", {word + " 3 0 1 2 0"}), with_data("zone"));
     EXPECT_EQ(error.code, Errc::kImportFailed);
     EXPECT_NE(error.detail.find("line 19: user data '" + word + "' is no integer of 32 bits"),
               std::string::npos)
@@ -117,7 +120,7 @@ std::string binary_ply(const std::string& type, T first, T second, bool is_big) 
 
 TEST_F(UserDataTest, OfBinaryFilesHasAnyIntegerTypeAndByteOrder) {
   const auto numbers = [&](const std::string& bytes) {
-    return numbers_of(load("a.ply", bytes, with("zone")));
+    return numbers_of(load("a.ply", bytes, with_data("zone")));
   };
   for (const bool is_big : {false, true}) {
     EXPECT_EQ(numbers(binary_ply("uchar", std::uint8_t{3}, std::uint8_t{255}, is_big)),
@@ -138,15 +141,15 @@ TEST_F(UserDataTest, OfBinaryFilesHasAnyIntegerTypeAndByteOrder) {
 TEST_F(UserDataTest, ThatAFileDoesNotHaveIsRefused) {
   const auto refusal = [&](const std::string& name, const std::string& bytes,
                            const std::string& property) {
-    const Error error = fail(name, bytes, with(property));
+    const Error error = fail(name, bytes, with_data(property));
     EXPECT_EQ(error.code, Errc::kMeshUnsupported);
     return error.detail.substr(error.detail.find(name));
   };
-  const std::string ply = text_ply("int", {"1 3 0 1 2 0"});
+  const std::string ply = ply_with_data("int", {"1 3 0 1 2 0"});
   EXPECT_EQ(refusal("a.ply", ply, "zome"),
             "a.ply: user data of faces 'zome': faces have no such property; integers of theirs "
             "are: zone; did you mean 'zone'?");
-  EXPECT_EQ(refusal("a.ply", text_ply("float", {"1 3 0 1 2 0"}), "groups"),
+  EXPECT_EQ(refusal("a.ply", ply_with_data("float", {"1 3 0 1 2 0"}), "groups"),
             "a.ply: user data of faces 'groups': faces have no such property; they have none that "
             "is an integer");
   EXPECT_EQ(refusal("a.ply", ply, "heat"),
@@ -185,12 +188,12 @@ TEST_F(UserDataTest, OfGroupsIsTheirNumberByFirstFace) {
                                  points +
                                      "g empty\ng b  c\nf 1 2 3\no object\nf 1 3 4\ng a\nf 1 2 4\n"
                                      "g b c\nf 2 3 4\ng\nf 4 3 2\ng default\nf 3 2 1\n",
-                                 with("groups"));
+                                 with_data("groups"));
   EXPECT_EQ(numbers_of(imported), (Numbers{0, 0, 1, 0, 2, 2}));
   EXPECT_FALSE(imported.report.has_no_groups);
-  const Imported before = load("a.obj", points + "f 1 2 3\ng a\nf 1 3 4\n", with("groups"));
+  const Imported before = load("a.obj", points + "f 1 2 3\ng a\nf 1 3 4\n", with_data("groups"));
   EXPECT_EQ(numbers_of(before), (Numbers{0, 1}));
-  const Imported none = load("a.obj", points + "f 1 2 3\nf 1 3 4\n", with("groups"));
+  const Imported none = load("a.obj", points + "f 1 2 3\nf 1 3 4\n", with_data("groups"));
   EXPECT_EQ(numbers_of(none), (Numbers{0, 0}));
   EXPECT_TRUE(none.report.has_no_groups);
 }
@@ -202,12 +205,12 @@ constexpr const char* kNodes =
 
 TEST_F(UserDataTest, OfPrimitivesIsTheirNumberInTheFile) {
   GltfText gltf;
-  gltf.add_mesh("car", {{kTwo}, {kTriangle, -1, 0}, {kTriangle}});
-  gltf.add_mesh("nowhere", {{kTriangle}});
+  gltf.add_mesh("car", {{kTwo}, {kPositionsOfOne, -1, 0}, {kPositionsOfOne}});
+  gltf.add_mesh("nowhere", {{kPositionsOfOne}});
   gltf.add_mesh("", {{kTwo}});
-  gltf.add_mesh("lamp", {{kTriangle}, {kTriangle}});
+  gltf.add_mesh("lamp", {{kPositionsOfOne}, {kPositionsOfOne}});
   const std::string text = gltf.text(kNodes);
-  const Imported imported = load("a.gltf", text, with("primitives"));
+  const Imported imported = load("a.gltf", text, with_data("primitives"));
   EXPECT_EQ(numbers_of(imported), (Numbers{4, 4, 0, 0, 2, 5, 6, 4, 4}));
   EXPECT_EQ(imported.report.primitives,
             (std::vector<std::string>{"car-0", "car-1", "car-2", "nowhere", "mesh 2", "lamp-0",
@@ -215,21 +218,21 @@ TEST_F(UserDataTest, OfPrimitivesIsTheirNumberInTheFile) {
   EXPECT_TRUE(load("a.gltf", text).report.primitives.empty());
   EXPECT_TRUE(load("a.gltf", text).user_data.empty());
   // Of one root, and of several.
-  EXPECT_EQ(numbers_of(load("b.gltf", gltf.text(R"({"mesh":0})"), with("primitives"))),
+  EXPECT_EQ(numbers_of(load("b.gltf", gltf.text(R"({"mesh":0})"), with_data("primitives"))),
             (Numbers{0, 0, 2}));
   std::string roots = gltf.text(R"({"mesh":3},{"mesh":0})");
   roots.replace(roots.find("[0]"), 3, "[0,1]");
-  EXPECT_EQ(numbers_of(load("c.gltf", roots, with("primitives"))), (Numbers{5, 6, 0, 0, 2}));
+  EXPECT_EQ(numbers_of(load("c.gltf", roots, with_data("primitives"))), (Numbers{5, 6, 0, 0, 2}));
 }
 
 TEST_F(UserDataTest, OfPrimitivesInAScene) {
   GltfText gltf;
-  gltf.add_mesh("car", {{kTwo}, {kTriangle}});
-  gltf.add_mesh("box", {{kTriangle}});
-  gltf.add_mesh("box of the same shape", {{kTriangle}});
+  gltf.add_mesh("car", {{kTwo}, {kPositionsOfOne}});
+  gltf.add_mesh("box", {{kPositionsOfOne}});
+  gltf.add_mesh("box of the same shape", {{kPositionsOfOne}});
   gltf.add_mesh("lamp", {{kTwo}});
   const auto path = write("a.gltf", gltf.text(kNodes));
-  const Result<SourceScene> scene = import_scene(path, with("primitives"));
+  const Result<SourceScene> scene = import_scene(path, with_data("primitives"));
   ASSERT_TRUE(scene.ok()) << scene.error().message();
   ASSERT_EQ(scene->instances.size(), 4u);
   const auto of = [&](std::size_t instance) {
@@ -245,17 +248,18 @@ TEST_F(UserDataTest, OfExtrasIsThatOfThePrimitiveOrItsMaterialOrItsMesh) {
   GltfText gltf;
   gltf.add_mesh("a",
                 {{kTwo, 0, 4, R"({"zone":7})"},
-                 {kTriangle, 0},
-                 {kTriangle, 1, 4, R"({"other":1})"},
-                 {kTriangle}},
+                 {kPositionsOfOne, 0},
+                 {kPositionsOfOne, 1, 4, R"({"other":1})"},
+                 {kPositionsOfOne}},
                 R"({"zone":-1,"depth":2.5,"text":"x"})");
-  gltf.add_mesh("b", {{kTriangle, 1, 4, "[3]"}, {kTriangle, 0, 4, R"({"zone":4294967295.0})"}});
+  gltf.add_mesh(
+      "b", {{kPositionsOfOne, 1, 4, "[3]"}, {kPositionsOfOne, 0, 4, R"({"zone":4294967295.0})"}});
   const std::string text = gltf.text(R"({"children":[1,2]},{"mesh":1},{"mesh":0})",
                                      R"({"extras":{"zone":70000}},{"extras":{"zones":[1]}})");
-  EXPECT_EQ(numbers_of(load("a.gltf", text, with("zone"))),
+  EXPECT_EQ(numbers_of(load("a.gltf", text, with_data("zone"))),
             (Numbers{0, 0xffffffffu, 7, 7, 70000, 0xffffffffu, 0xffffffffu}));
   const auto refusal = [&](const std::string& name) {
-    const Error error = fail("a.gltf", text, with(name));
+    const Error error = fail("a.gltf", text, with_data(name));
     EXPECT_EQ(error.code, Errc::kMeshUnsupported);
     return error.detail.substr(error.detail.find("a.gltf"));
   };
@@ -265,7 +269,7 @@ TEST_F(UserDataTest, OfExtrasIsThatOfThePrimitiveOrItsMaterialOrItsMesh) {
             "them; did you mean 'zone'?");
   EXPECT_TRUE(has(refusal("primitive"), "did you mean 'primitives'?"));
   for (const auto& [name, found] : {std::pair("depth", "2.5"), std::pair("text", "\"x\"")}) {
-    const Error error = fail("a.gltf", text, with(name));
+    const Error error = fail("a.gltf", text, with_data(name));
     EXPECT_EQ(error.code, Errc::kImportFailed);
     EXPECT_TRUE(has(error.detail, "a.gltf: primitive 0 of mesh 'a': user data of faces '" +
                                       std::string(name) +
@@ -275,15 +279,15 @@ TEST_F(UserDataTest, OfExtrasIsThatOfThePrimitiveOrItsMaterialOrItsMesh) {
 }
 
 TEST_F(UserDataTest, OfGltfWithoutMeshesIsNotTheFault) {
-  EXPECT_EQ(fail("a.gltf", GltfText().text(R"({"name":"empty"})"), with("zone")).code,
+  EXPECT_EQ(fail("a.gltf", GltfText().text(R"({"name":"empty"})"), with_data("zone")).code,
             Errc::kNoFaces);
-  EXPECT_EQ(fail("a.gltf", "{", with("zone")).code, Errc::kImportFailed);
+  EXPECT_EQ(fail("a.gltf", "{", with_data("zone")).code, Errc::kImportFailed);
 }
 
 TEST_F(UserDataTest, TellsMeshesOfOneShapeApart) {
   const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
   const auto scene = [&](const std::string& faces) {
-    Result<SourceScene> read = import_scene(write("a.obj", points + faces), with("groups"));
+    Result<SourceScene> read = import_scene(write("a.obj", points + faces), with_data("groups"));
     EXPECT_TRUE(read.ok());
     return std::move(read).value().meshes.front();
   };

@@ -4,7 +4,6 @@
 #include <array>
 #include <cfenv>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <set>
 #include <string>
@@ -18,6 +17,7 @@
 #include "cooker/write/file_writer.h"
 #include "tests/support/cooked.h"
 #include "tests/support/float_state.h"
+#include "tests/support/infinity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
@@ -27,7 +27,7 @@ namespace {
 
 using cooker::SourceMesh;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 class Answers : public testing::TestWithParam<test::Encoding> {};
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <set>
 #include <string>
@@ -18,6 +17,7 @@
 
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
+#include "tests/support/infinity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/shape_reference.h"
@@ -35,7 +35,7 @@ using test::LongTriangle;
 using test::LongVector;
 using test::Surface;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 // What cast.h allows, in units of the largest coordinate.
 constexpr long double kDoubt = 0x1p-46L;
 

@@ -12,6 +12,7 @@
 #include "cooker/cook.h"
 #include "format/codec_wide.h"
 #include "tests/support/cooked.h"
+#include "tests/support/infinity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/unit/query/batches.h"
@@ -23,8 +24,8 @@ namespace {
 using Boxes = std::vector<Eigen::AlignedBox3d>;
 using Spheres = std::vector<Sphere>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kInfinity;
+using test::kNan;
 constexpr std::size_t kAllFaces = std::numeric_limits<std::size_t>::max();
 
 // What a visit found, and how it ended.

@@ -2,7 +2,6 @@
 // Batches of closest points answer each point as it is answered alone, to the bit.
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,6 +11,7 @@
 #include "cooker/cook.h"
 #include "format/codec_wide.h"
 #include "tests/support/cooked.h"
+#include "tests/support/infinity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/unit/query/batches.h"
@@ -20,8 +20,8 @@
 namespace boxtree {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kInfinity;
+using test::kNan;
 
 using test::same_bits;
 bool same_bits(const PointResult& a, const PointResult& b) {

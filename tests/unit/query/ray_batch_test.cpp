@@ -13,6 +13,7 @@
 #include "cooker/cook.h"
 #include "format/codec_wide.h"
 #include "tests/support/cooked.h"
+#include "tests/support/infinity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/unit/query/batches.h"
@@ -21,8 +22,8 @@
 namespace boxtree {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kInfinity;
+using test::kNan;
 
 using test::same_bits;
 bool same_bits(const RayResult& a, const RayResult& b) {

@@ -67,7 +67,7 @@ TEST(Approximate, TruthsAreThoseOfBruteForce) {
 }
 
 // Without times: the same on every machine.
-const MeshTradeoff& counted() {
+const MeshTradeoff& counted_torus() {
   static const MeshTradeoff tradeoff = [] {
     SourceMesh torus = test::torus(24, 40);
     torus.name = "torus";
@@ -78,7 +78,7 @@ const MeshTradeoff& counted() {
 
 std::vector<const TradePoint*> queried_points() {
   std::vector<const TradePoint*> points;
-  for (const TradePoint& point : counted().points) {
+  for (const TradePoint& point : counted_torus().points) {
     if (!point.approximate[0].by_error.empty()) points.push_back(&point);
   }
   return points;
@@ -190,7 +190,7 @@ TEST(Approximate, FalseBoundsAreCounted) {
 }
 
 TEST(ApproximatePage, ShowsEveryStepAndSaysWhatIsPromised) {
-  const std::vector<PageSection> sections = approximate_sections(counted());
+  const std::vector<PageSection> sections = approximate_sections(counted_torus());
   ASSERT_EQ(sections.size(), kApproximateKinds);
   for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
     const PageSection& section = sections[kind];
@@ -217,15 +217,15 @@ TEST(ApproximatePage, ShowsEveryStepAndSaysWhatIsPromised) {
 
 TEST(ApproximateData, JsonAndCsvSayWhatTheStepsSay) {
   TradeoffReport report;
-  report.meshes = {counted()};
+  report.meshes = {counted_torus()};
   const auto json = nlohmann::json::parse(to_json(report));
   const auto& points = json.at("meshes").at(0).at("points");
   std::istringstream lines(approximate_to_csv(report));
   std::string line;
   ASSERT_TRUE(std::getline(lines, line));
   const auto commas = std::count(line.begin(), line.end(), ',');
-  for (std::size_t p = 0; p < counted().points.size(); ++p) {
-    const TradePoint& point = counted().points[p];
+  for (std::size_t p = 0; p < counted_torus().points.size(); ++p) {
+    const TradePoint& point = counted_torus().points[p];
     const bool is_queried = !point.approximate[0].by_error.empty();
     EXPECT_EQ(points[p].at("approximate").is_null(), !is_queried) << point.name();
     if (!is_queried) continue;

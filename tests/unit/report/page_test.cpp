@@ -9,7 +9,7 @@
 namespace boxtree::cooker {
 namespace {
 
-Page sample() {
+Page sample_page() {
   Page page;
   page.title = "T & <title>";
   page.text = "made by \"x\"";
@@ -21,7 +21,7 @@ Page sample() {
 }
 
 TEST(Page, HtmlEscapesAndHoldsEverything) {
-  const std::string html = to_html(sample());
+  const std::string html = to_html(sample_page());
   for (const char* part : {"T &amp; &lt;title&gt;", "&quot;x&quot;",
                            "<td class=\"word\">&lt;b&gt;bunny&lt;/b&gt;</td>", "<td>12</td>",
                            "<td>3.5</td>", "<svg", "</svg>"}) {
@@ -33,7 +33,7 @@ TEST(Page, HtmlEscapesAndHoldsEverything) {
 
 // Found by a newcomer: recommendations stood below fifteen lines that explain them.
 TEST(Page, NotesStandBehindConclusionsAndTables) {
-  Page page = sample();
+  Page page = sample_page();
   page.sections.front().conclusions = {{"Take", "this"}};
   page.sections.front().notes = "because <of> that";
   const std::string html = to_html(page);
@@ -46,7 +46,7 @@ TEST(Page, NotesStandBehindConclusionsAndTables) {
 }
 
 TEST(Page, MarksLieInsideTheFrame) {
-  const std::string html = to_html(sample());
+  const std::string html = to_html(sample_page());
   const std::regex circle("<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\"");
   std::size_t count = 0;
   for (std::sregex_iterator it(html.begin(), html.end(), circle), end; it != end; ++it, ++count) {
@@ -58,7 +58,7 @@ TEST(Page, MarksLieInsideTheFrame) {
 }
 
 TEST(Page, TextAlignsColumns) {
-  const std::string text = to_text(sample());
+  const std::string text = to_text(sample_page());
   EXPECT_NE(text.find("  mesh          bytes\n  <b>bunny</b>     12\n  cow             3.5\n"),
             std::string::npos)
       << text;

@@ -15,7 +15,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> read(std::string_view text)
   return pairs;
 }
 
-std::string fault(std::string_view text) {
+std::string fault_of_list(std::string_view text) {
   const auto ranges = parse_hidden_faces(text, "list.txt");
   EXPECT_FALSE(ranges.ok()) << text;
   return ranges.ok() ? "" : ranges.error().detail;
@@ -47,12 +47,12 @@ TEST(HiddenFaces, WhatTouchesIsJoined) {
 
 TEST(HiddenFaces, FaultsNameTheirLine) {
   const std::string expected = "expected the number of a face, or a range as 12-40, found ";
-  EXPECT_EQ(fault("1\n2\nabc\n"), "list.txt:3: " + expected + "\"abc\"");
-  EXPECT_EQ(fault("9-7"), "list.txt:1: " + expected + "\"9-7\"");
-  EXPECT_EQ(fault("\n-4"), "list.txt:2: " + expected + "\"-4\"");
-  EXPECT_EQ(fault("1 2"), "list.txt:1: " + expected + "\"1 2\"");
-  EXPECT_EQ(fault("1.5"), "list.txt:1: " + expected + "\"1.5\"");
-  EXPECT_EQ(fault("4294967296"), "list.txt:1: " + expected + "\"4294967296\"");
+  EXPECT_EQ(fault_of_list("1\n2\nabc\n"), "list.txt:3: " + expected + "\"abc\"");
+  EXPECT_EQ(fault_of_list("9-7"), "list.txt:1: " + expected + "\"9-7\"");
+  EXPECT_EQ(fault_of_list("\n-4"), "list.txt:2: " + expected + "\"-4\"");
+  EXPECT_EQ(fault_of_list("1 2"), "list.txt:1: " + expected + "\"1 2\"");
+  EXPECT_EQ(fault_of_list("1.5"), "list.txt:1: " + expected + "\"1.5\"");
+  EXPECT_EQ(fault_of_list("4294967296"), "list.txt:1: " + expected + "\"4294967296\"");
 }
 
 }  // namespace

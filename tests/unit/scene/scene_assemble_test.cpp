@@ -17,6 +17,7 @@
 
 #include "format/scene_record.h"
 #include "tests/support/cooked.h"
+#include "tests/support/infinity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
@@ -28,7 +29,7 @@ using test::CookedScene;
 using test::CookedTree;
 using test::require;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 // The numbers of one answer, instances by their ids; compared to the bit.
 using Answer = std::vector<double>;

@@ -3,7 +3,6 @@
 // way.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <set>
 #include <tuple>
@@ -14,6 +13,7 @@
 #include <boxtree/boxtree.h>
 
 #include "runtime/scene/bound_scene.h"
+#include "tests/support/infinity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
@@ -33,7 +33,7 @@ using test::require;
 using test::Surface;
 using test::WorldTriangle;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 Surface surface_of(const std::vector<WorldTriangle>& triangles) {
   std::vector<BoundedTriangle> bounded;

@@ -24,13 +24,13 @@ using test::require;
 using test::WorldTriangle;
 
 // All answers to a fixed list of queries, lengths in units of 2^exponent.
-struct Answers {
+struct RangeAnswers {
   std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> rays;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> boxes, spheres;
   std::vector<std::tuple<double, double, double, double, std::uint32_t>> points;
   std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>> contacts;
 
-  friend bool operator==(const Answers&, const Answers&) = default;
+  friend bool operator==(const RangeAnswers&, const RangeAnswers&) = default;
 };
 
 class SceneRange : public testing::TestWithParam<CodecId> {
@@ -44,7 +44,7 @@ class SceneRange : public testing::TestWithParam<CodecId> {
     return test::cook_scene({test::sphere(5, 6), test::soup(20, 3)}, parts, {GetParam()});
   }
 
-  static Answers answers(const Scene& scene, int exponent) {
+  static RangeAnswers answers(const Scene& scene, int exponent) {
     std::mt19937_64 random(7);
     const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
     const double scale = std::ldexp(1.0, exponent);
@@ -58,7 +58,7 @@ class SceneRange : public testing::TestWithParam<CodecId> {
         return true;
       };
     };
-    Answers all;
+    RangeAnswers all;
     for (int i = 0; i < 60; ++i) {
       const auto hit = require(closest_hit(scene, {point(6), point(1) / scale}));
       all.rays.emplace_back(hit ? hit->t / scale : -1, hit ? hit->instance : 0,
@@ -87,7 +87,7 @@ class SceneRange : public testing::TestWithParam<CodecId> {
 TEST_P(SceneRange, PowersOfTwoScaleAllAnswers) {
   for (const std::uint32_t moving : {3u, 1u}) {
     const CookedScene cooked = scene_of_size(0, moving);
-    const Answers expected = answers(require(Scene::bind(cooked.file)), 0);
+    const RangeAnswers expected = answers(require(Scene::bind(cooked.file)), 0);
     EXPECT_FALSE(expected.contacts.empty());
     EXPECT_FALSE(expected.spheres.empty());
     for (const int exponent : {-900, -700, -480, -360, -350, -349, -300, -150, -1, 100, 190}) {

@@ -2,7 +2,6 @@
 // Walks of a scene's top level, vectorised and scalar, against the boxes of all its instances.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "runtime/scene/top_level_walk.h"
 #include "runtime/tree/root_box.h"
 #include "runtime/walk/traversal.h"
+#include "tests/support/infinity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
@@ -22,7 +22,7 @@ namespace boxtree {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 using Numbers = std::vector<std::uint32_t>;
 
 // Instances of one small mesh, `spread` apart at most, and their boxes in the scene's frame.
