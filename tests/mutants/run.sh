@@ -11,10 +11,8 @@ cd "$(dirname "$0")/../.."
 install_missing $BUILD_PACKAGES $SAMPLE_PACKAGES $TEST_PACKAGES $MUTANT_PACKAGES
 count=${1:-200} seed=${2:-1}
 work=$PWD/build/mutants/$count-$seed
-targets="orientation_test triangle_triangle_test triangle_box_test closest_point_test triangle_ray_test
-  triangle_distance_test vector3_test format_test file_test golden_test tree_test corrupt_test duplicates_test proof_test scene_test pair_range_test
-  overlap_within_test queries_test point_test distance_test encode_test boxtree_exact wide_walks_test
-  robustness_test mutation_test"
+targets="primitive_test format_test file_test golden_test tree_test proof_test scene_test queries_test encode_test
+  boxtree_exact wide_walks_test robustness_test mutation_test"
 
 if [ ! -e "$work/list.json" ]; then
   mkdir -p "$work/src"

@@ -16,32 +16,20 @@ import sys
 
 # Those that take seconds: most faults die there. The seconds are bounds, ten times what each takes.
 QUICK = [
-    ("tests/unit/primitive/orientation_test", 60),
-    ("tests/unit/primitive/triangle_triangle_test", 60),
-    ("tests/unit/primitive/triangle_box_test", 60),
-    ("tests/unit/primitive/closest_point_test", 60),
-    ("tests/unit/primitive/triangle_ray_test", 60),
-    ("tests/unit/primitive/triangle_distance_test", 120),
-    ("tests/unit/primitive/vector3_test", 60),
+    ("tests/unit/primitive/primitive_test", 240),
     ("tests/unit/format/format_test", 60),
     ("tests/unit/file/file_test", 60),
     ("tests/golden/golden_test", 60),
-    ("tests/unit/tree/tree_test", 60),
-    ("tests/unit/tree/corrupt_test", 60),
-    ("tests/unit/tree/duplicates_test", 60),
+    ("tests/unit/tree/tree_test", 120),
     ("tests/unit/proof/proof_test", 60),
     ("tests/unit/scene/scene_test", 120),
-    ("tests/unit/query/pair_range_test", 120),
-    ("tests/unit/query/overlap_within_test", 120),
     ("tests/oracle/exact/boxtree_exact", 240),
     ("tests/unit/encode/encode_test", 240),
-    ("tests/unit/query/point_test", 240),
-    ("tests/unit/query/queries_test", 240),
+    ("tests/unit/query/queries_test", 600),
 ]
 # For what those leave alive.
 SLOW = [
     ("tests/fuzz/mutation_test", 600),
-    ("tests/unit/query/distance_test", 600),
     ("tests/robustness/robustness_test", 600),
     ("tests/unit/walk/wide_walks_test", 600),
 ]

@@ -100,7 +100,8 @@ TEST(PlacedNormal, StaysOnItsSideInMirrorsAndStretches) {
   EXPECT_EQ(placed_normal(flipped.asDiagonal(), up), Eigen::Vector3d(-up));
   EXPECT_EQ(placed_normal(stretched.asDiagonal(), up), up);
   // Scaled alone, every bit stays.
-  const Eigen::Vector3d any = unit_normal({{Eigen::Vector3d(0, 0, 0), {1.1, 0.3, 0.7}, {-0.2, 0.9, 0.4}}});
+  const Eigen::Vector3d any =
+      unit_normal({{Eigen::Vector3d(0, 0, 0), {1.1, 0.3, 0.7}, {-0.2, 0.9, 0.4}}});
   for (const double scale : {1.0, 0x1p-300, 3.0}) {
     EXPECT_EQ(placed_normal(Eigen::Vector3d::Constant(scale).asDiagonal(), any), any);
   }

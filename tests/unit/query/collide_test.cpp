@@ -28,7 +28,7 @@ using test::LongTriangle;
 using test::LongVector;
 
 // What collide.h allows, in units of the largest coordinate.
-constexpr long double kDoubt = 0x1p-46L;
+constexpr long double kContactDoubt = 0x1p-46L;
 
 class Collide : public testing::TestWithParam<test::Encoding> {
  protected:
@@ -38,8 +38,8 @@ class Collide : public testing::TestWithParam<test::Encoding> {
   template <class Shape>
   void check(const Tree& tree, const Shape& shape, double size) {
     const LongShape exact = test::long_shape(shape);
-    const long double doubt =
-        kDoubt * (size + exact.center.cwiseAbs().maxCoeff() + 2 * (exact.reach + exact.radius));
+    const long double doubt = kContactDoubt * (size + exact.center.cwiseAbs().maxCoeff() +
+                                               2 * (exact.reach + exact.radius));
     std::vector<Contact> contacts;
     ASSERT_EQ(test::require(collide(tree, shape,
                                     [&](const Contact& contact) {
@@ -211,8 +211,8 @@ TEST_P(Collide, ASphereNearlyCenteredOnAnEdgeIsAsDeepAsItIs) {
         const LongTriangle triangle = test::long_triangle(
             test::require(cooked.tree.triangle(contact.face, contact.triangle)));
         const long double distance = test::distance(exact, LongVector::Zero(), triangle);
-        EXPECT_LE(contact.depth, 1.5L - distance + 4 * kDoubt) << f << " 2^-" << exponent;
-        EXPECT_GE(contact.depth, 1.5L - distance - 4 * kDoubt) << f << " 2^-" << exponent;
+        EXPECT_LE(contact.depth, 1.5L - distance + 4 * kContactDoubt) << f << " 2^-" << exponent;
+        EXPECT_GE(contact.depth, 1.5L - distance - 4 * kContactDoubt) << f << " 2^-" << exponent;
         ++count;
         return true;
       }));

@@ -83,8 +83,8 @@ Status visit_all(const Tree& tree, const Spheres& spheres, std::span<VisitResult
 
 // By every instruction set. `most(i)`: the faces after which the visitor stops shape i.
 template <class Shape, class Most>
-void expect_as_alone(const Tree& tree, const std::vector<Shape>& shapes, const Most& most,
-                     const QueryLimits& limits = {}) {
+void expect_visits_as_alone(const Tree& tree, const std::vector<Shape>& shapes, const Most& most,
+                            const QueryLimits& limits = {}) {
   for_each_target([&](const char* target) {
     SCOPED_TRACE(target);
     std::vector<Found> faces(shapes.size());
@@ -100,8 +100,8 @@ void expect_as_alone(const Tree& tree, const std::vector<Shape>& shapes, const M
   });
 }
 template <class Shape>
-void expect_as_alone(const Tree& tree, const std::vector<Shape>& shapes) {
-  expect_as_alone(tree, shapes, [](std::size_t) { return kAllFaces; });
+void expect_visits_as_alone(const Tree& tree, const std::vector<Shape>& shapes) {
+  expect_visits_as_alone(tree, shapes, [](std::size_t) { return kAllFaces; });
 }
 
 // Of a box each: the box, and the spheres around it and in it.
@@ -142,8 +142,8 @@ TEST_P(OverlapBatches, OfALatticeAreAsAlone) {
         boxes.push_back(
             box_at(bounds.center() + size / 6 * at, Eigen::Vector3d::Constant(half * size)));
       }
-      expect_as_alone(tree, boxes);
-      expect_as_alone(tree, spheres_of(boxes));
+      expect_visits_as_alone(tree, boxes);
+      expect_visits_as_alone(tree, spheres_of(boxes));
     }
   });
 }
@@ -151,8 +151,8 @@ TEST_P(OverlapBatches, OfALatticeAreAsAlone) {
 TEST_P(OverlapBatches, OfShapesThatHaveNothingInCommonAreAsAlone) {
   for_each_mesh([&](const Tree& tree, const Eigen::AlignedBox3d& bounds) {
     const Boxes boxes = boxes_around(bounds, 300, 2);
-    expect_as_alone(tree, boxes);
-    expect_as_alone(tree, spheres_of(boxes));
+    expect_visits_as_alone(tree, boxes);
+    expect_visits_as_alone(tree, spheres_of(boxes));
   });
 }
 
@@ -163,8 +163,8 @@ TEST_P(OverlapBatches, ThatStopAreAsAlone) {
     const auto most = [](std::size_t i) {
       return std::array<std::size_t, 4>{1, 3, 10, kAllFaces}[i % 4];
     };
-    expect_as_alone(tree, boxes, most);
-    expect_as_alone(tree, spheres_of(boxes), most);
+    expect_visits_as_alone(tree, boxes, most);
+    expect_visits_as_alone(tree, spheres_of(boxes), most);
   });
 }
 
@@ -179,8 +179,8 @@ TEST_P(OverlapBatches, OnCornersAndEdgesAreAsAlone) {
       boxes.emplace_back(a.cwiseMin(b), a.cwiseMax(b));
       boxes.push_back(Eigen::AlignedBox3d(a).extend(b).extend(c));
     }
-    expect_as_alone(tree, boxes);
-    expect_as_alone(tree, spheres_of(boxes));
+    expect_visits_as_alone(tree, boxes);
+    expect_visits_as_alone(tree, spheres_of(boxes));
   });
 }
 
@@ -215,13 +215,13 @@ TEST_P(OverlapBatches, WithShapesThatAreRefusedOrExtremeAreAsAlone) {
           break;
       }
     }
-    expect_as_alone(tree, boxes);
+    expect_visits_as_alone(tree, boxes);
     Spheres spheres = spheres_of(boxes);
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       if (i % 10 == 8) spheres[i].radius = std::array{kNan, -1.0, kInfinity}[i / 10 % 3];
       if (i % 10 == 9) spheres[i].radius = std::array{0.0, 0x1p1000, 0x1p-1060}[i / 10 % 3];
     }
-    expect_as_alone(tree, spheres);
+    expect_visits_as_alone(tree, spheres);
   });
 }
 
@@ -229,8 +229,8 @@ TEST_P(OverlapBatches, OfAnyNumberAreAsAlone) {
   const test::CookedTree cooked = test::cook_tree(test::torus(20, 12), GetParam());
   for (std::size_t count = 0; count < 40; ++count) {
     const Boxes boxes = boxes_around(cooked.tree.bounds(), count, 1.5);
-    expect_as_alone(cooked.tree, boxes);
-    expect_as_alone(cooked.tree, spheres_of(boxes));
+    expect_visits_as_alone(cooked.tree, boxes);
+    expect_visits_as_alone(cooked.tree, spheres_of(boxes));
   }
 }
 
@@ -239,8 +239,8 @@ TEST_P(OverlapBatches, GiveEachShapeItsOwnLimit) {
   const Boxes boxes = boxes_around(cooked.tree.bounds(), 50, 1.5);
   const auto most = [](std::size_t) { return kAllFaces; };
   for (const std::uint64_t nodes : {0u, 1u, 3u, 1000u}) {
-    expect_as_alone(cooked.tree, boxes, most, QueryLimits{nodes});
-    expect_as_alone(cooked.tree, spheres_of(boxes), most, QueryLimits{nodes});
+    expect_visits_as_alone(cooked.tree, boxes, most, QueryLimits{nodes});
+    expect_visits_as_alone(cooked.tree, spheres_of(boxes), most, QueryLimits{nodes});
   }
 }
 
@@ -278,8 +278,8 @@ TEST(OverlapBatch, GivesErrorsToTheShapesThatComeUponThem) {
         std::byte{200};
     const File file = test::require(File::open(bytes));
     const Tree tree = test::require(Tree::bind(file));
-    expect_as_alone(tree, boxes);
-    expect_as_alone(tree, spheres_of(boxes));
+    expect_visits_as_alone(tree, boxes);
+    expect_visits_as_alone(tree, spheres_of(boxes));
     for (const Eigen::AlignedBox3d& box : boxes) {
       ++(visit_alone(tree, box, kAllFaces, {}).end.ok() ? answered : failed);
     }

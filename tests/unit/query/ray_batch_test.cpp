@@ -35,7 +35,7 @@ bool same_bits(const RayResult& a, const RayResult& b) {
 }
 
 // What results hold before a call: every one must be written.
-const RayResult kUnwritten(Errc::kInternal, "not written");
+const RayResult kUnwrittenRay(Errc::kInternal, "not written");
 
 // By every instruction set; that of the closest hits is the same by all. `options`: QueryLimits or
 // FaceOptions.
@@ -44,7 +44,7 @@ void expect_as_alone(const Tree& tree, const std::vector<Ray>& rays, const Optio
   std::vector<RayResult> by_first;
   for_each_target([&](const char* target) {
     SCOPED_TRACE(target);
-    std::vector<RayResult> closest(rays.size(), kUnwritten), any(rays.size(), kUnwritten);
+    std::vector<RayResult> closest(rays.size(), kUnwrittenRay), any(rays.size(), kUnwrittenRay);
     ASSERT_TRUE(closest_hits(tree, rays, closest, options).ok());
     ASSERT_TRUE(any_hits(tree, rays, any, options).ok());
     if (by_first.empty()) by_first = closest;
@@ -233,7 +233,7 @@ TEST(RayBatch, RefusesResultsOfAnotherNumber) {
   const test::CookedTree cooked = test::cook_tree(test::torus(20, 12), CodecId::kWide8);
   const std::array<Ray, 3> rays = {
       {{{1, 0, 9}, {0, 0, -1}}, {{2, 0, 9}, {0, 0, -1}}, {{1, 0, 9}, {0, 0, -1}}}};
-  std::array<RayResult, 2> results = {kUnwritten, kUnwritten};
+  std::array<RayResult, 2> results = {kUnwrittenRay, kUnwrittenRay};
   for (const Status& refused :
        {closest_hits(cooked.tree, rays, results), any_hits(cooked.tree, rays, results)}) {
     EXPECT_EQ(refused.error().code, Errc::kInvalidQuery);

@@ -28,7 +28,7 @@ std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> faces) {
 }
 
 // Every kind of query, as numbers that are compared to the last bit.
-std::vector<double> answers(const Tree& tree) {
+std::vector<double> answers_by_kind(const Tree& tree) {
   std::vector<double> out;
   std::mt19937_64 random(7);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
@@ -38,7 +38,8 @@ std::vector<double> answers(const Tree& tree) {
     const auto hit = closest_hit(tree, {from, point() - from});
     out.insert(out.end(), {hit ? hit->t : -1, hit ? static_cast<double>(hit->face.id) : -1});
     const auto touch = cast_closest(tree, Sphere{from, 0.1}, Motion{point() - from});
-    out.insert(out.end(), {touch ? touch->t : -1, touch ? static_cast<double>(touch->face.id) : -1});
+    out.insert(out.end(),
+               {touch ? touch->t : -1, touch ? static_cast<double>(touch->face.id) : -1});
     const auto near = closest_point(tree, from);
     out.insert(out.end(), {near->distance, static_cast<double>(near->face.id)});
     std::vector<std::uint32_t> box, sphere;
@@ -76,9 +77,9 @@ TEST(CodecRegistry, ACodecWithoutWalksOfItsOwnIsWalkedByItsFunctions) {
     ASSERT_TRUE(with.ok() && without.ok());
     ASSERT_NE(BoundTree::of(*with).codec_functions().walks, nullptr);
     ASSERT_EQ(BoundTree::of(*without).codec_functions().walks, nullptr);
-    const std::vector<double> expected = answers(*with);
+    const std::vector<double> expected = answers_by_kind(*with);
     EXPECT_GT(expected.size(), 500u);
-    EXPECT_EQ(answers(*without), expected) << codec_name(codec);
+    EXPECT_EQ(answers_by_kind(*without), expected) << codec_name(codec);
   }
 }
 

@@ -22,6 +22,7 @@
 #include "tests/support/require.h"
 #include "tests/support/source_faces.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/tree/section_bytes.h"
 
 namespace boxtree {
 namespace {
@@ -59,10 +60,6 @@ void expect_materials(const SourceMesh& mesh, const FaceMaterials& materials, co
   });
 }
 
-std::size_t section_bytes(const File& file, SectionKind kind) {
-  return OpenFile::of(file).section(kind, 0).size();
-}
-
 struct Case {
   CodecId codec;
   GeometryId geometry;
@@ -91,8 +88,9 @@ TEST_P(MaterialsOf, EachFaceAreThoseOfTheSource) {
     const std::size_t by_runs = materials.runs.size() * sizeof(FaceRun);
     const bool has_ids = face_ids || geometry == GeometryId::kExternal;
     const bool is_by_runs = by_runs <= mesh.faces.size() && (has_ids || materials.runs.size() == 1);
-    EXPECT_EQ(section_bytes(file, SectionKind::kMaterialRuns), is_by_runs ? by_runs : 0);
-    EXPECT_EQ(section_bytes(file, SectionKind::kFaceMaterials), is_by_runs ? 0 : mesh.faces.size());
+    EXPECT_EQ(test::section_bytes(file, SectionKind::kMaterialRuns), is_by_runs ? by_runs : 0);
+    EXPECT_EQ(test::section_bytes(file, SectionKind::kFaceMaterials),
+              is_by_runs ? 0 : mesh.faces.size());
   }
 }
 

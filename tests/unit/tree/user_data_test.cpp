@@ -20,6 +20,7 @@
 #include "tests/support/require.h"
 #include "tests/support/source_faces.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/tree/section_bytes.h"
 
 namespace boxtree {
 namespace {
@@ -51,17 +52,13 @@ std::vector<FaceRun> runs_of(const Numbers& numbers) {
   return runs;
 }
 
-std::size_t section_bytes(const File& file, SectionKind kind) {
-  return OpenFile::of(file).section(kind, 0).size();
-}
-
-struct Case {
+struct DataCase {
   CodecId codec;
   GeometryId geometry;
   bool face_ids;
 };
 
-class UserDataOf : public testing::TestWithParam<Case> {};
+class UserDataOf : public testing::TestWithParam<DataCase> {};
 
 TEST_P(UserDataOf, EachFaceIsThatOfTheSource) {
   const auto& [codec, geometry, face_ids] = GetParam();
@@ -92,14 +89,14 @@ TEST_P(UserDataOf, EachFaceIsThatOfTheSource) {
       const std::size_t by_face = mesh.faces.size() * bytes_a_face;
       const bool has_ids = face_ids || geometry == GeometryId::kExternal;
       const bool is_by_runs = has_ids && by_runs <= by_face;
-      EXPECT_EQ(section_bytes(file, SectionKind::kUserDataRuns), is_by_runs ? by_runs : 0);
-      EXPECT_EQ(section_bytes(file, SectionKind::kFaceUserData), is_by_runs ? 0 : by_face);
+      EXPECT_EQ(test::section_bytes(file, SectionKind::kUserDataRuns), is_by_runs ? by_runs : 0);
+      EXPECT_EQ(test::section_bytes(file, SectionKind::kFaceUserData), is_by_runs ? 0 : by_face);
     }
   }
 }
 
-std::vector<Case> cases() {
-  std::vector<Case> all;
+std::vector<DataCase> data_cases() {
+  std::vector<DataCase> all;
   for (const CodecId codec : test::all_codecs()) {
     for (const bool face_ids : {true, false}) all.push_back({codec, GeometryId::kExact, face_ids});
     all.push_back({codec, GeometryId::kExternal, false});
@@ -108,8 +105,8 @@ std::vector<Case> cases() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, UserDataOf, testing::ValuesIn(cases()),
-                         [](const testing::TestParamInfo<Case>& each) {
+INSTANTIATE_TEST_SUITE_P(Cases, UserDataOf, testing::ValuesIn(data_cases()),
+                         [](const testing::TestParamInfo<DataCase>& each) {
                            return test::test_name({each.param.codec, each.index}) + "_" +
                                   std::string(geometry_name(each.param.geometry)) +
                                   (each.param.face_ids ? "_ids" : "_no_ids");
@@ -121,7 +118,7 @@ TEST(UserData, OfOneNumberIsOneRunThatNeedsNoIds) {
   const auto bytes = test::cook_bytes(test::terrain(4, 3), std::vector<FaceRun>{{0, 70000}},
                                       CodecId::kWide8, options);
   const File file = require(File::open(Bytes(bytes)));
-  EXPECT_EQ(section_bytes(file, SectionKind::kUserDataRuns), sizeof(FaceRun));
+  EXPECT_EQ(test::section_bytes(file, SectionKind::kUserDataRuns), sizeof(FaceRun));
   const Tree tree = require(Tree::bind(file));
   EXPECT_EQ(tree.user_data({kNoFaceId, 3}), 70000u);
 }
@@ -143,7 +140,7 @@ TEST(UserData, OfAFaceThatIsNotThereIsNone) {
   const auto bytes = test::cook_bytes(mesh, runs_of(random_numbers(mesh, 9, 1)), CodecId::kWide8);
   const File file = require(File::open(Bytes(bytes)));
   const Tree tree = require(Tree::bind(file));
-  ASSERT_GT(section_bytes(file, SectionKind::kFaceUserData), 0u);
+  ASSERT_GT(test::section_bytes(file, SectionKind::kFaceUserData), 0u);
   EXPECT_NE(tree.user_data({kNoFaceId, tree.face_count() - 1}), std::nullopt);
   EXPECT_EQ(tree.user_data({0, tree.face_count()}), std::nullopt);
   EXPECT_EQ(tree.user_data({}), std::nullopt);
