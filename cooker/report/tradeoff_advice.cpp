@@ -21,7 +21,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 bool has_disturbed_times(const MeshTradeoff& mesh) {
-  return mesh.timed && is_disturbed(mesh.timed_work.processor_share());
+  return mesh.timed && mesh.timed_work.is_disturbed();
 }
 
 // The point of wide8 with arrays; null if there is none.
@@ -307,11 +307,20 @@ std::string time_in_words(double nanoseconds) {
 
 std::string disturbance_in_words(const MeshTradeoff& mesh) {
   if (!has_disturbed_times(mesh)) return {};
-  return fmt::format(
-      "other programs had the processor for {:.0f} % of the time in which queries were timed, so "
-      "times may be wrong; slowdowns, and what is recommended by them, are by counted work, as "
-      "with --no-times. Measure again when the machine does nothing else",
-      100 * (1 - mesh.timed_work.processor_share()));
+  const TimedWork& work = mesh.timed_work;
+  const std::string what =
+      work.lacks_processor()
+          ? fmt::format(
+                "other programs had the processor for {:.0f} % of the time in which queries "
+                "were timed",
+                100 * (1 - work.processor_share()))
+          : fmt::format(
+                "the processor took up to {:.0f} % longer for the same work at some times "
+                "than at others while queries were timed",
+                100 * (work.speed_ratio() - 1));
+  return what +
+         ", so times may be wrong; slowdowns, and what is recommended by them, are by counted "
+         "work, as with --no-times. Measure again when the machine, and its host, do nothing else";
 }
 
 std::string move_in_words(const MeshTradeoff& mesh, double share) {

@@ -155,7 +155,8 @@ Json to_json(const MeshTradeoff& mesh) {
       {"positions", precision_name(mesh.is_f64 ? Precision::kF64 : Precision::kF32)},
       {"moved_by_f32", mesh.moved_by_f32},
       {"source_bytes", to_json(mesh.source)},
-      {"processor_share", mesh.timed ? Json(mesh.timed_work.processor_share()) : Json(nullptr)}};
+      {"processor_share", mesh.timed ? Json(mesh.timed_work.processor_share()) : Json(nullptr)},
+      {"speed_ratio", mesh.timed ? Json(mesh.timed_work.speed_ratio()) : Json(nullptr)}};
   json["advice"] = nullptr;
   if (const auto advice = advise(mesh)) {
     json["advice"] = {{"balanced", mesh.points[advice->balanced].name()},

@@ -1391,7 +1391,7 @@ if grep warning err; then exit 1; fi
 same "$(jq -c '[.meshes[].points | length] | unique' report.json)" '[18]'
 same "$(jq -c '[.meshes[].points[] | .gates.pass and .times == null] | unique' report.json)" '[true]'
 same "$(jq -c '[.meshes[].points[].bytes | .total == .nodes + .vertices + .corners + .face_ids + .rest] | unique' report.json)" '[true]'
-same "$(jq -c '[.meshes[].processor_share] | unique' report.json)" '[null]'
+same "$(jq -c '[.meshes[] | .processor_share, .speed_ratio] | unique' report.json)" '[null]'
 same "$(wc -l <report.csv)" 37
 same "$(grep -c '<h2>stiff</h2>' report.html)" 1
 jq 'del(.load)' report.json >first.json
@@ -1399,7 +1399,7 @@ expect 0 "$boxtree" report cube.obj layers.obj --no-times --quick --include stif
 same "$(jq 'del(.load)' report.json | cmp - first.json && echo same)" same
 expect 0 "$boxtree" report cube.obj --quick --json-out report.json
 same "$(tail -1 out)" "wrote report.json, $(stat -c %s report.json) bytes"
-same "$(jq -c '[.meshes[].processor_share | . > 0 and . <= 1]' report.json)" '[true]'
+same "$(jq -c '[.meshes[] | .processor_share > 0 and .processor_share <= 1 and .speed_ratio >= 1]' report.json)" '[true]'
 same "$(jq -c '[.meshes[].points[].times | .ray.median_ns <= .ray.p99_ns] | unique' report.json)" '[true]'
 expect 2 "$boxtree" report missing.obj
 expect 2 "$boxtree" report cube.obj --include missing.json

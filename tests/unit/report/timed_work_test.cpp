@@ -19,14 +19,29 @@ TEST(TimedWork, OfSeveralCallsIsTheirSum) {
   TimedWork work(0, 1);
   EXPECT_EQ(work.add([] { return 7; }), 7);
   EXPECT_LT(work.processor_share(), 1) << "the second in which nothing ran counts";
+  TimedWork alone;
+  EXPECT_EQ(alone.speed_ratio(), 1);
+  EXPECT_EQ(alone.add([] { return 8; }), 8);
+  EXPECT_GE(alone.speed_ratio(), 1);
 }
 
 // One program that wants the processor as much has it for half of the time.
 TEST(TimedWork, IsDisturbedByProgramsThatHaveTheProcessor) {
-  EXPECT_FALSE(is_disturbed(1));
-  EXPECT_FALSE(is_disturbed(0.99));
-  EXPECT_TRUE(is_disturbed(0.5));
-  EXPECT_TRUE(is_disturbed(0));
+  EXPECT_FALSE(TimedWork().is_disturbed());
+  EXPECT_FALSE(TimedWork(0.99, 1).is_disturbed());
+  for (const double seconds : {0.5, 0.0}) {
+    EXPECT_TRUE(TimedWork(seconds, 1).lacks_processor());
+    EXPECT_TRUE(TimedWork(seconds, 1).is_disturbed());
+  }
+}
+
+// A core whose other thread is busy, or a virtual machine whose host is, is slower and has all the
+// time: nothing is missing of its processor time.
+TEST(TimedWork, IsDisturbedByAProcessorThatIsSlowerAtTimes) {
+  EXPECT_FALSE(TimedWork(1, 1, 1.05).is_disturbed());
+  EXPECT_FALSE(TimedWork(1, 1, 1.4).lacks_processor());
+  EXPECT_TRUE(TimedWork(1, 1, 1.4).is_disturbed());
+  EXPECT_EQ(TimedWork(1, 1, 1.4).speed_ratio(), 1.4);
 }
 
 }  // namespace

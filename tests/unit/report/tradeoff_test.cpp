@@ -351,10 +351,10 @@ MeshTradeoff three_points() {
 }
 
 TEST(Advice, SaysThatOtherProgramsDisturbedTheTimes) {
-  const auto page = [](double processor_seconds, bool timed) {
+  const auto page = [](double processor_seconds, bool timed, double speed_ratio = 1) {
     MeshTradeoff made = three_points();
     made.timed = timed;
-    made.timed_work = {processor_seconds, 10};
+    made.timed_work = {processor_seconds, 10, speed_ratio};
     TradeoffReport report;
     report.meshes = {made};
     return to_text(tradeoff_page(report));
@@ -363,6 +363,10 @@ TEST(Advice, SaysThatOtherProgramsDisturbedTheTimes) {
   EXPECT_EQ(page(4, false).find("disturbed"), std::string::npos);
   EXPECT_NE(page(4, true).find("Times were disturbed: other programs had the processor for 60 % of "
                                "the time in which queries were timed"),
+            std::string::npos);
+  EXPECT_NE(page(10, true, 1.4)
+                .find("Times were disturbed: the processor took up to 40 % longer for "
+                      "the same work at some times than at others"),
             std::string::npos);
 }
 
