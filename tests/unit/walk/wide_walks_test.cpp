@@ -150,8 +150,9 @@ class QuerySet {
   std::mt19937_64 random_;
 };
 
-using Faces = std::multiset<std::uint32_t>;
-using FacePairs = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
+// Sorted, each as often as it is visited.
+using Faces = std::vector<std::uint32_t>;
+using FacePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 // All that a ray's answer says; without a hit the face is the last value.
 using RayAnswer = std::tuple<double, std::uint32_t, std::uint32_t, double, double>;
@@ -204,32 +205,36 @@ PointAnswer query_point(const Tree& tree, const Eigen::Vector3d& point) {
 Faces query_box(const Tree& tree, const Eigen::AlignedBox3d& box) {
   Faces faces;
   EXPECT_TRUE(overlap_box(tree, box, [&](const FaceRef& face) {
-                faces.insert(face.id);
+                faces.push_back(face.id);
                 return true;
               }).ok());
+  std::sort(faces.begin(), faces.end());
   return faces;
 }
 
 Faces query_sphere(const Tree& tree, const std::pair<Eigen::Vector3d, double>& sphere) {
   Faces faces;
   EXPECT_TRUE(overlap_sphere(tree, sphere.first, sphere.second, [&](const FaceRef& face) {
-                faces.insert(face.id);
+                faces.push_back(face.id);
                 return true;
               }).ok());
+  std::sort(faces.begin(), faces.end());
   return faces;
 }
 
 FacePairs query_pairs(const Tree& tree, const Pose& pose) {
   FacePairs pairs;
   EXPECT_TRUE(overlap_pairs(tree, Pose::Identity(), tree, pose, [&](const FacePair& pair) {
-                pairs.insert({pair.first.id, pair.second.id});
+                pairs.emplace_back(pair.first.id, pair.second.id);
                 return true;
               }).ok());
+  std::sort(pairs.begin(), pairs.end());
   const auto first = first_contact(tree, Pose::Identity(), tree, pose);
   EXPECT_TRUE(first.ok());
   EXPECT_EQ(first.has_value(), !pairs.empty());
   if (first.has_value()) {
-    EXPECT_TRUE(pairs.contains({first->first.id, first->second.id}));
+    EXPECT_TRUE(std::binary_search(pairs.begin(), pairs.end(),
+                                   std::pair(first->first.id, first->second.id)));
   }
   return pairs;
 }
