@@ -51,8 +51,7 @@ eigen=$(sed -n 's/^Eigen3_DIR:[A-Z]*=//p' "$build/CMakeCache.txt")/../../../incl
 for header in $installed; do
   echo "#include <boxtree/$header>" >"$work/alone.cpp"
   "$compiler" -std=c++20 -Wall -Wextra -Wpedantic -Werror -I "$work/prefix/include" -isystem "$eigen" \
-    -fsyntax-only "$work/alone.cpp" || fail "$header is not enough by itself"
-  "$compiler" -std=c++20 -I "$work/prefix/include" -isystem "$eigen" -M "$work/alone.cpp" >"$work/read"
+    -fsyntax-only -MD -MF "$work/read" -MT it "$work/alone.cpp" || fail "$header is not enough by itself"
   if grep -qE '(codec|grid|variant|filesystem)(\.h)?( |$)' "$work/read"; then
     fail "$header includes $(grep -oE '[^ ]*(codec|grid|variant|filesystem)[^ ]*' "$work/read")"
   fi
