@@ -251,10 +251,10 @@ std::string Command::take(const std::vector<std::string>& words) {
 }
 
 std::optional<int> Command::run(int argc, char** argv) {
-  Result<std::vector<std::string>> words =
-      with_response_files(std::vector<std::string>(argv, argv + argc));
-  if (!words) return fail(words.error());
-  set_words(std::move(*words));
+  Result<ExpandedWords> expanded = with_response_files(std::vector<std::string>(argv, argv + argc));
+  if (!expanded) return fail(expanded.error());
+  empty_lists_ = std::move(expanded->empty_lists);
+  set_words(std::move(expanded->words));
   try {
     app_->parse(std::vector(words_.rbegin(), words_.rend() - 1));  // as CLI11 wants them
   } catch (const CLI::ParseError& error) {
@@ -267,6 +267,10 @@ Command& Command::add_command(const std::string& name, const std::string& descri
   commands_.emplace_back(new Command(name, description, *this));
   app_->add_subcommand(commands_.back()->app_);
   return *commands_.back();
+}
+
+const std::vector<std::string>& Command::empty_lists() const {
+  return parent_ != nullptr ? parent_->empty_lists() : empty_lists_;
 }
 
 bool Command::is_word(const std::string& word) const {

@@ -122,8 +122,8 @@ class Command {
   Command& operator=(const Command&) = delete;
   ~Command();
 
-  /// Parses a command line, with response files (response_file.h), and runs what it calls. The exit status if there was nothing to run:
-  /// that of help, which was printed, or of an error.
+  /// Parses a command line, with response files (response_file.h), and runs what it calls. The exit
+  /// status if there was nothing to run: that of help, which was printed, or of an error.
   std::optional<int> run(int argc, char** argv);
 
   /// The same of words that are no command line, as those of a file: runs what they call and prints
@@ -136,6 +136,8 @@ class Command {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Of the program: the words of the command line behind --.
   [[nodiscard]] const std::vector<std::string>& behind_end() const { return behind_end_; }
+  /// Words of the command line that name lists without a line, see with_response_files().
+  [[nodiscard]] const std::vector<std::string>& empty_lists() const;
   /// The command that contains this one; null for the program.
   [[nodiscard]] const Command* parent() const { return parent_; }
   [[nodiscard]] std::vector<const Command*> commands() const;
@@ -200,6 +202,7 @@ class Command {
   bool stands_too_early_ = false;
   std::vector<std::string> words_;  // of the program: the command line
   std::vector<std::string> behind_end_;
+  std::vector<std::string> empty_lists_;  // of the program
 };
 
 /// Of a callback: `what` is required and was not given.

@@ -10,11 +10,11 @@
 
 namespace boxtree::cooker {
 
-Result<std::vector<std::string>> with_response_files(const std::vector<std::string>& words) {
-  std::vector<std::string> all;
+Result<ExpandedWords> with_response_files(const std::vector<std::string>& words) {
+  ExpandedWords all;
   for (const std::string& word : words) {
     if (word.size() < 2 || word[0] != '@') {
-      all.push_back(word);
+      all.words.push_back(word);
       continue;
     }
     const Result<std::string> text = read_whole_file(named_path(word.substr(1)), kMaxFaceListBytes);
@@ -24,10 +24,12 @@ Result<std::vector<std::string>> with_response_files(const std::vector<std::stri
     }
     std::string_view rest = *text;
     if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
+    const std::size_t before = all.words.size();
     while (!rest.empty()) {
       const std::string_view line = take_line(rest);
-      if (!line.empty()) all.emplace_back(line);
+      if (!line.empty()) all.words.emplace_back(line);
     }
+    if (all.words.size() == before) all.empty_lists.push_back(word);
   }
   return all;
 }

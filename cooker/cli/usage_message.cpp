@@ -286,7 +286,12 @@ std::string usage_fault(const CLI::App* app, const CLI::Error& error) {
   const std::string place = name.size() > app->get_name().size()
                                 ? name.substr(app->get_name().size() + 1) + ": "
                                 : std::string();
-  return place + fault(*app, command, error);
+  std::string text = place + fault(*app, command, error);
+  const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  if (is_missing && !command.empty_lists().empty()) {
+    text += "; the list " + command.empty_lists().front() + " has no line";
+  }
+  return text;
 }
 
 std::string usage_message(const CLI::App* app, const CLI::Error& error) {

@@ -43,6 +43,12 @@ cmp all.bxt out
 { printf '\357\273\277'; cat list; } >marked.list # as editors for Windows write it
 expect 0 "$boxtree" pack @marked.list -o marked.bxt -q
 cmp all.bxt marked.bxt
+# As of a shard without a job.
+: >empty.list
+expect 1 "$boxtree" pack @empty.list -o none.bxt
+grep -qxF 'boxtree: usage: pack: FILE is required; the list @empty.list has no line' err
+expect 0 "$boxtree" pack @empty.list @list -o other.bxt -q
+cmp all.bxt other.bxt
 expect 0 "$boxtree" verify all.bxt
 expect 0 "$boxtree" split all.bxt -o taken --json
 same "$(jq -c '[.files[] | .output, .member]' out)" '["taken/level.bxt","level","taken/rock.bxt","rock","taken/tree.bxt","tree"]'
