@@ -152,9 +152,13 @@ double mean_time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size
   return mesh.timed ? point.times[kind].mean_ns : point.modelled[kind];
 }
 
+bool goes_by_work(const MeshTradeoff& mesh) {
+  return !mesh.timed || has_disturbed_times(mesh);
+}
+
 std::vector<double> slowdowns_of(const MeshTradeoff& mesh) {
   const TradePoint* const baseline = baseline_of(mesh);
-  const bool is_by_work = !mesh.timed || has_disturbed_times(mesh);
+  const bool is_by_work = goes_by_work(mesh);
   const auto time_of = [&](const TradePoint& point, std::size_t kind) {
     return is_by_work ? point.modelled[kind] : point.times[kind].mean_ns;
   };

@@ -34,9 +34,13 @@ struct Advice {
 /// What the last kind of queries is called: what is timed goes deeper than what is counted.
 [[nodiscard]] const char* contacts_name(const MeshTradeoff& mesh);
 
+/// Whether slowdowns and recommendations go by counted work: without times, and where other
+/// programs disturbed them.
+[[nodiscard]] bool goes_by_work(const MeshTradeoff& mesh);
+
 /// The time of each point relative to that of wide8 with arrays: the mean over the kinds of queries
-/// of the ratio of both mean times, as slowdowns() has it; of modelled ones where there are no
-/// others or other programs disturbed them. 1 where either has no time.
+/// of the ratio of both mean times, as slowdowns() has it; of modelled ones where
+/// goes_by_work(). 1 where either has no time.
 [[nodiscard]] std::vector<double> slowdowns_of(const MeshTradeoff& mesh);
 
 /// Which points may be recommended: those that pass their gates, that boxtree::runtime alone reads

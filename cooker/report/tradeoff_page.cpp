@@ -250,6 +250,7 @@ PageSection advice_section(const MeshTradeoff& mesh) {
     cooks += fmt::format("{}{} for {}", cooks.empty() ? "" : ", ", mesh.points[*place].name(),
                          goal_name(goal));
   }
+  const bool is_by_work = goes_by_work(mesh);
   section.notes = fmt::format(
       "Every encoding gives the same answers as brute force over its own geometry; on a grid that "
       "geometry is rounded. Sizes are those of whole files with face ids, as the commands make "
@@ -258,15 +259,18 @@ PageSection advice_section(const MeshTradeoff& mesh) {
       "ids, nodes and geometry alone, is the figure \"with geometry\" of boxtree cook. "
       "Unless told a codec, boxtree cook{}{} chooses by counted work, the same on every machine: "
       "{}. "
-      "The choices above go by the {} on this page, by whole files, and by how far a surface "
+      "The choices above go by the {}, by whole files, and by how far a surface "
       "may move, so that they may differ. Only encodings with the same surface, bit for bit, "
       "compete for the fastest. Slowdown: {}, of the {} mean times of rays, boxes ({}), closest "
       "points and contacts ({}).",
       mesh.is_f64 ? " --f64" : "",
       mesh.tolerance ? fmt::format(" --tolerance {}", *mesh.tolerance) : "", cooks,
-      mesh.timed ? "times" : "modelled times", kSlowdownMeaning,
-      mesh.timed ? "measured" : "modelled", kBoxMeaning, contacts_meaning(mesh));
-  if (mesh.timed) {
+      is_by_work ? "modelled times" : "times on this page", kSlowdownMeaning,
+      is_by_work ? "modelled" : "measured", kBoxMeaning,
+      is_by_work ? kShallowMeaning : contacts_meaning(mesh));
+  if (is_by_work && mesh.timed) {
+    section.notes += fmt::format(" Times are measured, of {}.", contacts_meaning(mesh));
+  } else if (mesh.timed) {
     section.notes += fmt::format(
         " The slowdown that boxtree cook prints is that of the same kinds of queries, but of fewer "
         "of them; it computes times from the work that it counts, and has shallow contacts alone: "

@@ -357,13 +357,20 @@ TEST(Advice, SaysThatOtherProgramsDisturbedTheTimes) {
     made.timed_work = {processor_seconds, 10, speed_ratio};
     TradeoffReport report;
     report.meshes = {made};
-    return to_text(tradeoff_page(report));
+    const Page whole = tradeoff_page(report);
+    return to_text(whole) + to_html(whole);
   };
   EXPECT_EQ(page(10, true).find("disturbed"), std::string::npos);
   EXPECT_EQ(page(4, false).find("disturbed"), std::string::npos);
   EXPECT_NE(page(4, true).find("Times were disturbed: other programs had the processor for 60 % of "
                                "the time in which queries were timed"),
             std::string::npos);
+  // Whatever the page says of slowdowns is said of the same times.
+  EXPECT_NE(page(10, true).find("go by the times on this page"), std::string::npos);
+  EXPECT_NE(page(10, true).find("of the measured mean times"), std::string::npos);
+  EXPECT_NE(page(4, true).find("go by the modelled times"), std::string::npos);
+  EXPECT_NE(page(4, true).find("of the modelled mean times"), std::string::npos);
+  EXPECT_EQ(page(4, true).find("of the measured mean times"), std::string::npos);
   EXPECT_NE(page(10, true, 1.4)
                 .find("Times were disturbed: the processor took up to 40 % longer for "
                       "the same work at some times than at others"),
