@@ -88,18 +88,10 @@ constexpr std::array kTextFormats = {
     TextFormat{"smd", check_smd_end},
 };
 
-// Whether a file is text in which a comma ends a number (TextMends::commas). Files that are packed
-// begin otherwise.
+// See TextMends::commas.
 bool parts_numbers_by_commas(const SourceFile& source) {
-  const bool is_x = has_extension(source.path(), "x");
-  const bool is_xml = has_extension(source.path(), "x3d") || has_extension(source.path(), "xgl");
-  if (!is_x && !is_xml) return false;
-  const Result<std::string> text = source.read();
-  if (!text.ok()) return false;
-  // "xof 0303txt 0032": a name, a version, the kind, the bits of a float.
-  if (is_x)
-    return text->starts_with("xof ") && text->find("txt") == std::string_view("xof 0303").size();
-  return text->find('\0') == std::string::npos && text->find('<') != std::string::npos;
+  return has_extension(source.path(), "x") || has_extension(source.path(), "x3d") ||
+         has_extension(source.path(), "xgl");
 }
 
 // Its reader of Collada gives the root, which has no transform in the file, a scale: the metres of

@@ -50,8 +50,10 @@ void RecordingIo::note_failure(const fs::path& file) {
 
 namespace {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
+// Files of X begin with a name, a version and their kind, "xof 0303txt"; the other formats are XML.
+bool is_packed(std::string_view text) {
+  if (text.starts_with("xof ")) return text.find("txt") != std::string_view("xof 0303").size();
+  return text.find('\0') != std::string_view::npos || text.find('<') == std::string_view::npos;
 }
 
 std::string with_blanks_behind_commas(const std::string& text) {
@@ -72,7 +74,7 @@ std::string with_blanks_behind_commas(const std::string& text) {
 Assimp::IOStream* RecordingIo::open_mended() const {
   Result<std::string> text = source_.read();
   if (!text.ok()) return nullptr;
-  if (mends_.commas) text = with_blanks_behind_commas(*text);
+  if (mends_.commas && !is_packed(*text)) text = with_blanks_behind_commas(*text);
   if (mends_.line_end && has_open_end(*text)) text->push_back('\n');
   auto bytes = std::make_unique<std::uint8_t[]>(text->size());
   std::memcpy(bytes.get(), text->data(), text->size());
@@ -105,11 +107,11 @@ Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
     note_failure(file);
     return nullptr;
   }
-  use_.bytes_opened += stream->FileSize();
-  if (use_.opened) use_.opened(use_.bytes_opened);
   fs::path normal = tidied(file);
   if (std::find(use_.files.begin(), use_.files.end(), normal) == use_.files.end()) {
     use_.files.push_back(std::move(normal));
+    use_.bytes_opened += stream->FileSize();
+    if (use_.opened) use_.opened(use_.bytes_opened);
   }
   if (std::find(use_.named.begin(), use_.named.end(), file) == use_.named.end()) {
     use_.named.push_back(file);

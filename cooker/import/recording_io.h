@@ -27,7 +27,7 @@ struct SourceUse {
   std::filesystem::path inaccessible;
   /// Why the first file that could not be opened beside a named source could not be.
   std::optional<Error> failure;
-  /// Called, unless empty, whenever a file has been opened, with the bytes of all until then.
+  /// Called, unless empty, whenever another file has been opened, with the bytes of all until then.
   std::function<void(std::uint64_t bytes)> opened;
   std::uint64_t bytes_opened = 0;
 };
@@ -38,8 +38,8 @@ struct TextMends {
   /// A line end behind a last line that has none: its reader of SMD goes on behind the end of its
   /// buffer without one.
   bool line_end = false;
-  /// A blank behind a comma between two digits. Its readers of XGL, X and X3D take such a comma for
-  /// a decimal point, where in these formats it ends a number.
+  /// A blank behind a comma between two digits, unless the file is packed. Its readers of XGL, X
+  /// and X3D take such a comma for a decimal point, where in these formats it ends a number.
   bool commas = false;
 };
 

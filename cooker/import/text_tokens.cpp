@@ -17,10 +17,6 @@ bool is_space(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 // `token` in the spelling of from_chars, which does not accept a plus sign.
 std::string_view without_plus(std::string_view token) {
   const bool has_plus = token.size() > 1 && token[0] == '+' && token[1] != '-';

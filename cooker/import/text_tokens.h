@@ -39,6 +39,10 @@ void split_tokens(std::string_view text, Tokens& tokens);
 /// `text` without leading and trailing blanks (spaces, tabs).
 [[nodiscard]] std::string_view without_blanks(std::string_view text);
 
+[[nodiscard]] constexpr bool is_digit(char c) noexcept {
+  return c >= '0' && c <= '9';
+}
+
 /// `word` with letters A to Z in lower case.
 [[nodiscard]] std::string in_lower_case(std::string_view word);
 

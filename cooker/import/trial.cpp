@@ -106,6 +106,8 @@ void disturb_memory() {
   static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));
 #endif
   limit(RLIMIT_CORE, 0);
+  // Of the limit of processor time: who started this process may have told it to ignore that.
+  static_cast<void>(std::signal(SIGXCPU, SIG_DFL));
   bytes_at_start = address_space();
   extend_trial(limits);
   disturb_memory();
