@@ -2,6 +2,7 @@
 // Compares processor time with elapsed time, and equal pieces of work with each other.
 #include "cooker/report/timed_work.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

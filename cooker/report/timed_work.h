@@ -3,7 +3,6 @@
 // much they made it slower (on the other thread of a core, on the host of a virtual machine).
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 
 #include "cooker/choose/measure.h"
