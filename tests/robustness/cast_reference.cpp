@@ -17,7 +17,7 @@ using test::LongShape;
 using test::LongTriangle;
 using test::LongVector;
 
-constexpr long double kFarthest = std::numeric_limits<long double>::infinity();
+constexpr long double kInfinity = std::numeric_limits<long double>::infinity();
 // What cast.h allows, in units of the largest coordinate.
 constexpr long double kDoubt = 0x1p-46L;
 // Long double tells no difference below this part of the largest coordinate.
@@ -96,7 +96,7 @@ bool CastReference::check_cast(Run& run, const Tree& tree, const Cast& cast,
     const long double whole =
         speed > 0 ? std::min<long double>(motion.t_max, 4 * (far + size) / speed) : 0;
     const auto least = [&](long double to) {
-      long double best = kFarthest;
+      long double best = kInfinity;
       for (const Item& item : items_) {
         best = std::min(best, test::least_of(item.triangle, exact, direction, to, radius + doubt));
       }

@@ -12,9 +12,9 @@
 namespace boxtree::robustness {
 namespace {
 
-class RandomPose {
+class Random {
  public:
-  explicit RandomPose(std::uint64_t seed) : random_(seed) {}
+  explicit Random(std::uint64_t seed) : random_(seed) {}
   double unit() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
   Eigen::Vector3d vector() { return {unit() - 0.5, unit() - 0.5, unit() - 0.5}; }
   Eigen::Matrix3d rotation() {
@@ -54,7 +54,7 @@ std::size_t check_poses(Run& run, const SourceMesh& a, const SourceMesh& b,
 // Two rotated bodies, a metre long, 1e6 from the origin. A corner of the second is above the middle
 // of a face of the first. The gap at which contact begins is known up to the rounding of the poses.
 void far_away(Run& run) {
-  RandomPose random(4);
+  Random random(4);
   const SourceMesh box = box_mesh(Eigen::Vector3d(0.5, 0.5, 0.5));
   for (const CodecInfo& codec : kCodecs) {
     const Subject subject = make_subject(box, codec.id, kExactStore);
@@ -92,7 +92,7 @@ void far_away(Run& run) {
 // Translations that are exact in double: answers there equal those at the origin, to the last pair.
 void huge_translations(Run& run) {
   const SourceMesh mesh = snapped(test::torus(16, 12), -6);
-  RandomPose random(8);
+  Random random(8);
   for (const Store& store : kStores) {
     for (const CodecInfo& codec : kCodecs) {
       const Subject subject = make_subject(mesh, codec.id, store);
@@ -199,7 +199,7 @@ void affine_poses(Run& run) {
   run.premise(pairs > 1000, "hardly any pair of faces touches");
   // Scales that are rounded: compared with brute force.
   std::vector<Pose> poses;
-  RandomPose random(22);
+  Random random(22);
   for (const double scale : {1e-3, 0.1, 10.0, 1e3}) {
     Pose pose = Pose::Identity();
     pose.linear() = scale * random.rotation() * Eigen::Vector3d(1, -1, 1e-3).asDiagonal();
@@ -211,7 +211,7 @@ void affine_poses(Run& run) {
 
 void drifted_rotations(Run& run) {
   const SourceMesh first = test::city(20, 2), second = test::torus(16, 12);
-  RandomPose random(23);
+  Random random(23);
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < run.count(30, 500); ++i) {
     Pose pose = Pose::Identity();

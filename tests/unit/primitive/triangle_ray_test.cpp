@@ -18,7 +18,7 @@
 namespace boxtree {
 namespace {
 
-struct VertexSource {
+struct Source {
   std::mt19937_64 random;
   std::uniform_real_distribution<double> unit{-1, 1};
 
@@ -39,8 +39,7 @@ bool escapes(const std::vector<Triangle>& mesh, const Eigen::Vector3d& origin,
 
 // Aims at all corners and at random points of all edges, from the given inner points.
 template <class OriginOf>
-int count_escapes(const std::vector<Triangle>& mesh, int rays, VertexSource& source,
-                  OriginOf origin_of) {
+int count_escapes(const std::vector<Triangle>& mesh, int rays, Source& source, OriginOf origin_of) {
   int escaped = 0;
   for (int i = 0; i < rays; ++i) {
     const auto& c = mesh[static_cast<std::size_t>(i) % mesh.size()].corner;
@@ -54,7 +53,7 @@ int count_escapes(const std::vector<Triangle>& mesh, int rays, VertexSource& sou
 }
 
 TEST(TriangleRay, NothingEscapesFromASphere) {
-  VertexSource source{std::mt19937_64(0x1ea4)};
+  Source source{std::mt19937_64(0x1ea4)};
   const std::vector<Triangle> mesh = test::icosphere(3);
   EXPECT_EQ(count_escapes(mesh, 20000, source,
                           [&](const Eigen::Vector3d&, int i) -> Eigen::Vector3d {
@@ -66,7 +65,7 @@ TEST(TriangleRay, NothingEscapesFromASphere) {
 }
 
 TEST(TriangleRay, NothingEscapesFromATorus) {
-  VertexSource source{std::mt19937_64(0x70125)};
+  Source source{std::mt19937_64(0x70125)};
   const std::vector<Triangle> mesh = test::torus(40, 20);
   const auto inside = [](const Eigen::Vector3d& target, int) -> Eigen::Vector3d {
     return 3 * Eigen::Vector3d(target[0], target[1], 0).normalized();
@@ -76,7 +75,7 @@ TEST(TriangleRay, NothingEscapesFromATorus) {
 
 // Far from the origin and flattened, so that areas cancel to zero and below.
 TEST(TriangleRay, NothingEscapesFromFlatSpheresFarAway) {
-  VertexSource source{std::mt19937_64(0xfa4)};
+  Source source{std::mt19937_64(0xfa4)};
   for (const double flatness : {1e-3, 1e-9}) {
     std::vector<Triangle> mesh = test::icosphere(2);
     const Eigen::Vector3d offset(1000, -2000, 0);
@@ -156,7 +155,7 @@ TEST(TriangleRay, AgreesWithExtendedPrecision) {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
            a[2] * (b[0] * c[1] - b[1] * c[0]);
   };
-  VertexSource source{std::mt19937_64(0xa9)};
+  Source source{std::mt19937_64(0xa9)};
   int hits = 0;
   for (int i = 0; i < 40000; ++i) {
     const Triangle t{{source.point(), source.point(), source.point()}};

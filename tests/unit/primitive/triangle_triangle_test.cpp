@@ -15,7 +15,7 @@
 namespace boxtree {
 namespace {
 
-constexpr int kTrianglePairsPerFamily = 20000;
+constexpr int kPairsPerFamily = 20000;
 
 std::array<test::IntVector, 3> to_integer(const Triangle& t) {
   return {test::to_integer(t.corner[0]), test::to_integer(t.corner[1]),
@@ -39,20 +39,20 @@ TEST_P(TriangleTriangleFamily, AgreesWithExactArithmetic) {
   for (const std::int64_t range : {std::int64_t{64}, std::int64_t{1} << 32}) {
     test::TriangleCases cases(0x5eed + static_cast<std::uint64_t>(range), range);
     int intersecting = 0;
-    for (int i = 0; i < kTrianglePairsPerFamily / 2; ++i) {
+    for (int i = 0; i < kPairsPerFamily / 2; ++i) {
       const auto [p, q] = cases.pair(GetParam());
       const bool expected = exact_answer(p, q);
       intersecting += expected;
       ASSERT_EQ(triangles_intersect(p, q), expected) << "range " << range << ", pair " << i;
     }
-    EXPECT_GT(intersecting, kTrianglePairsPerFamily / 200) << "the family tests nothing";
-    EXPECT_LT(intersecting, kTrianglePairsPerFamily / 2) << "the family tests nothing";
+    EXPECT_GT(intersecting, kPairsPerFamily / 200) << "the family tests nothing";
+    EXPECT_LT(intersecting, kPairsPerFamily / 2) << "the family tests nothing";
   }
 }
 
 TEST_P(TriangleTriangleFamily, IsSymmetricAndIgnoresCornerOrder) {
   test::TriangleCases cases(0xacce55, 1 << 20);
-  for (int i = 0; i < kTrianglePairsPerFamily / 20; ++i) {
+  for (int i = 0; i < kPairsPerFamily / 20; ++i) {
     const auto [p, q] = cases.pair(GetParam());
     const bool expected = triangles_intersect(p, q);
     for (int a = 0; a < 6; ++a) {
@@ -66,7 +66,7 @@ TEST_P(TriangleTriangleFamily, IsSymmetricAndIgnoresCornerOrder) {
 
 TEST_P(TriangleTriangleFamily, DoesNotDependOnScale) {
   test::TriangleCases cases(0x5ca1e, 1 << 20);
-  for (int i = 0; i < kTrianglePairsPerFamily / 20; ++i) {
+  for (int i = 0; i < kPairsPerFamily / 20; ++i) {
     const auto [p, q] = cases.pair(GetParam());
     const bool expected = triangles_intersect(p, q);
     for (const int exponent : {-1000, -400, -300, -60, 170}) {
