@@ -25,10 +25,6 @@
 namespace boxtree {
 namespace {
 
-// Squares below this could lose significant bits to underflow: the smallest normal number is 2^-122
-// of it.
-constexpr double kShortestSquare = 0x1p-900;
-
 double largest(const Eigen::Vector3d& v) {
   return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
 }
@@ -59,12 +55,6 @@ struct Nearest {
   Eigen::Vector3d best;
   double distance = std::numeric_limits<double>::infinity();
 };
-
-// Triangles whose edges and height differ by factors below 2^5, seen from less than 2^20 edges
-// away, have weights that are off by less than 2^40 u.
-constexpr double kThin = 0x1p-10;
-constexpr double kFar = 0x1p40;
-constexpr double kWeightError = 0x1p-13;
 
 // Precondition: the square of b - a is not below kShortestSquare, or `has_foot` is false.
 Eigen::Vector3d closest_point(const Eigen::Vector3d& point, const Eigen::Vector3d& a,

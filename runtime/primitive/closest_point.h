@@ -21,4 +21,16 @@ namespace boxtree {
 [[nodiscard]] std::uint32_t closest_corners(const Eigen::Vector3d& point, const Triangle& triangle,
                                             const Eigen::Vector3d& closest) noexcept;
 
+// Below, what it is computed by, for those who do the same by vectors: sphere_contacts-inl.h.
+
+/// Squares below this could lose significant bits to underflow: the smallest normal number is
+/// 2^-122 of it.
+inline constexpr double kShortestSquare = 0x1p-900;
+
+/// Triangles whose edges and height differ by factors below 2^5, seen from less than 2^20 edges
+/// away, have weights that are off by less than 2^40 u.
+inline constexpr double kThin = 0x1p-10;
+inline constexpr double kFar = 0x1p40;
+inline constexpr double kWeightError = 0x1p-13;
+
 }  // namespace boxtree

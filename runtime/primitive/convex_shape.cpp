@@ -36,9 +36,8 @@ double ConvexShape::outer_radius() const noexcept {
 
 namespace {
 
-// closest_point.cpp: the largest error seen is 8 u of the largest coordinate.
 double point_distance_error(double max_abs) noexcept {
-  return 16 * kRoundoffF64 * max_abs + kSeparationUnderflow;
+  return kPointDistanceError * max_abs + kSeparationUnderflow;
 }
 
 }  // namespace

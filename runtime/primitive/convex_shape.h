@@ -15,6 +15,7 @@
 
 #include <boxtree/shape.h>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/triangle.h"
 #include "runtime/primitive/vector3.h"
 
@@ -110,6 +111,10 @@ struct ClosestPoints {
 /// From those that closest_points() has found.
 [[nodiscard]] ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner,
                                            const ClosestPoints& points) noexcept;
+
+/// How far the distance of a point from a triangle is off, in units of the largest coordinate:
+/// closest_point.cpp has seen 8 u.
+inline constexpr double kPointDistanceError = 16 * kRoundoffF64;
 
 /// Of a sphere, capsule or hull. Its center is the origin.
 [[nodiscard]] CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept;

@@ -17,7 +17,7 @@ namespace {
 // The power of two that scales a number into [1, 2), where squares and roots are safe; subnormal
 // numbers come as near as a finite power brings them. Precondition: x > 0, and below 2^1023.
 double power_to_one(double x) noexcept {
-  return std::bit_cast<double>((2046 - (std::bit_cast<std::uint64_t>(x) >> 52)) << 52);
+  return std::bit_cast<double>((kTwiceBias - (std::bit_cast<std::uint64_t>(x) >> 52)) << 52);
 }
 
 Eigen::Vector3d normalised(const Eigen::Vector3d& x) noexcept {
@@ -46,7 +46,7 @@ Eigen::Vector3d unit_normal(const Triangle& triangle) noexcept {
   const Eigen::Vector3d first = to_first - at, second = to_second - at;
   Eigen::Vector3d normal = cross(first, second);
   const double product = first.cwiseAbs().maxCoeff() * second.cwiseAbs().maxCoeff();
-  if (normal.cwiseAbs().maxCoeff() < product / 8) [[unlikely]] {
+  if (normal.cwiseAbs().maxCoeff() < product * kNearlyCollinear) [[unlikely]] {
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Eigen::Index i = (k + 1) % 3, j = (k + 2) % 3;
       const Rounded a = two_sum(to_first[i], -at[i]), b = two_sum(to_second[j], -at[j]);

@@ -2,6 +2,8 @@
 // The unit normal of a triangle, however thin, and what a pose makes of it.
 #pragma once
 
+#include <cstdint>
+
 #include <Eigen/Core>
 
 #include <boxtree/triangle.h>
@@ -25,5 +27,14 @@ namespace boxtree {
 
 /// Whether it turns the order of corners over.
 [[nodiscard]] bool is_mirror(const Eigen::Matrix3d& linear) noexcept;
+
+// Below, what it is computed by, for those who do the same by vectors: sphere_contacts-inl.h.
+
+/// Twice the bias of a double's exponent: that of a power of two less that of a number is the
+/// exponent of what scales the number into [1, 2).
+inline constexpr std::uint64_t kTwiceBias = 2046;
+/// Corners whose cross product has no coordinate above this part of the product of their edges are
+/// nearly collinear.
+inline constexpr double kNearlyCollinear = 0x1p-3;
 
 }  // namespace boxtree

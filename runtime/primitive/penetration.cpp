@@ -23,9 +23,7 @@ namespace {
 class LeastDepth {
  public:
   LeastDepth(const ConvexShape& shape, const Corners& corner, double doubt) noexcept
-      : shape_(shape),
-        corner_(corner),
-        error_(4 * doubt + 32 * kRoundoffF64 * max_abs_of(corner)) {}
+      : shape_(shape), corner_(corner), error_(4 * doubt + kDepthError * max_abs_of(corner)) {}
 
   // Along a vector of length 1, either way, or 0: then it is none.
   void try_axis(const Eigen::Vector3d& axis) noexcept {

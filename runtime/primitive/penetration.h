@@ -15,6 +15,10 @@ struct Penetration {
   TrianglePart feature;
 };
 
+/// How far the depth along a direction is off, in units of the largest coordinate, besides what
+/// `doubt` below makes of it.
+inline constexpr double kDepthError = 32 * kRoundoffF64;
+
 /// Precondition: they touch. `corner`: relative to the shape's center; `doubt`: how far these may
 /// be off. Of a hull the depth is least to within 2^-46 of the largest coordinate.
 [[nodiscard]] Penetration penetration(const ConvexShape& shape, const Corners& corner,

@@ -21,42 +21,53 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   if (interval.enter > interval.leave || interval.leave < 0) return;
   const double from = std::max(interval.enter, 0.0);
   if (from > t_max) return;
-  const Triangle compared = placed == nullptr ? triangle : placed->apply(triangle);
-  if (!admits_side(compared)) return;
-  const double scale = placed == nullptr ? 1 : placed->scale;
-  std::optional<double> s;
-  Penetration at{};
+  CastCandidate found;
+  set_triangle(triangle, face_index, half, found);
+  if (!admits_side(found.triangle)) return;
   if (wanted == Wanted::kContacts) {
-    const std::optional<Penetration> contact = moving.contact_at_rest(compared);
+    const std::optional<Penetration> contact = moving.contact_at_rest(found.triangle);
     if (!contact) return;
-    at = *contact;
-    s = 0;
+    found.at = *contact;
+    found.face_normal = face_normal(found.triangle, contact->normal);
   } else {
-    s = moving.first_touch(compared, from * scale, t_max * scale);
+    const double scale = scale_of_parameters();
+    const std::optional<double> s = moving.first_touch(found.triangle, from * scale, t_max * scale);
     if (!s) return;
+    found.s = *s;
   }
-  CastCandidate found{true,
-                      *s,
-                      {kNoFaceId, face_index},
-                      face_index,
-                      half,
-                      compared,
-                      triangle,
-                      placed != nullptr && placed->is_mirror,
-                      placed != nullptr ? placed->inactive : InactiveEdges(),
-                      at};
+  take(found);
+}
+
+void CastQuery::set_triangle(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half,
+                             CastCandidate& found) const noexcept {
+  found.is_hit = true;
+  found.face = {kNoFaceId, face_index};
+  found.original = face_index;
+  found.half = half;
+  found.in_tree = triangle;
+  if (placed == nullptr) {
+    found.triangle = triangle;
+    return;
+  }
+  found.triangle = placed->apply(triangle);
+  found.is_mirror = placed->is_mirror;
+  found.inactive = placed->inactive;
+}
+
+void CastQuery::take(CastCandidate& found) noexcept {
+  const double scale = scale_of_parameters();
   if (visitor != nullptr) {
-    error = faces.visit_wanted(tree, face_index, t_max, [&](const FaceRef& face) {
+    error = faces.visit_wanted(tree, found.original, t_max, names, [&](const FaceRef& face) {
       found.face = face;
       return (*visitor)(*this, found) / scale;
     });
     return;
   }
-  if (faces.has_filter() && !faces.name_wanted(tree, face_index, found.face)) return;
+  if (faces.has_filter() && !faces.name_wanted(tree, found.original, found.face)) return;
   if (best.is_hit && found.s == best.s) {
     name(tree, found.face);
     name(tree, best.face);
-    if (!comes_before(tree, found.face, half, best.face, best.half)) return;
+    if (!comes_before(tree, found.face, found.half, best.face, best.half)) return;
   }
   best = found;
   t_max = found.s / scale;
@@ -97,6 +108,7 @@ CastHit hit_of(const BoundTree& tree, const MovingShape& moving, const CastCandi
   hit.triangle = found.half;
   hit.point = frame.to_object(contact.point);
   hit.normal = contact.normal;
+  hit.face_normal = face_normal(found.triangle, hit.normal);
   set_feature(tree, found, contact.feature, hit);
   return hit;
 }

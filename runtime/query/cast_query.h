@@ -39,10 +39,11 @@ struct CastCandidate {
   std::uint32_t original = 0;  // the face of the tree's order that it is, or is a copy of
   std::uint32_t half = 0;
   Triangle triangle;
-  Triangle in_tree;        // the same in tree space
-  bool is_mirror = false;  // whether its corners 1 and 2 have changed places there
-  InactiveEdges inactive;  // of the instance, besides those of the tree
-  Penetration at;          // of kContacts
+  Triangle in_tree;             // the same in tree space
+  bool is_mirror = false;       // whether its corners 1 and 2 have changed places there
+  InactiveEdges inactive;       // of the instance, besides those of the tree
+  Penetration at;               // of kContacts
+  Eigen::Vector3d face_normal;  // likewise: see face_normal()
 };
 
 /// A cast on a tree that is placed by a pose: triangles are compared where it places them.
@@ -118,6 +119,13 @@ struct CastQuery : RayInTree {
 
   void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept;
 
+  /// What test() is made of, for walks that find touches of several triangles together. Fills in
+  /// which triangle a touch is of. `found`: as it is when it is made.
+  void set_triangle(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half,
+                    CastCandidate& found) const noexcept;
+  /// Takes a touch, which `found` holds.
+  void take(CastCandidate& found) noexcept;
+
   const BoundTree& tree;
   WalkBound& nodes;
   const ConvexShape& shape;  // see Path
@@ -130,11 +138,17 @@ struct CastQuery : RayInTree {
   Wanted wanted;
   const Visitor* visitor;
   FaceWishes faces;
+  LeafFaceRefs names{tree};  // for visitors
   CastCandidate best;
   Errc error = Errc::kOk;
   TriangleBatch batch;
 
  private:
+  // Of `moving`, over that of the line.
+  [[nodiscard]] double scale_of_parameters() const noexcept {
+    return placed == nullptr ? 1 : placed->scale;
+  }
+
   // Whether a triangle may be hit, from the side from which it is met.
   [[nodiscard]] bool admits_side(const Triangle& triangle) const noexcept;
 

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "runtime/query/moving_separation-inl.h"
+#include "runtime/query/sphere_contacts-inl.h"
 #include "runtime/walk/nearest-inl.h"
 #include "runtime/walk/prefetch-inl.h"
 
@@ -69,11 +70,14 @@ class CastLeaves {
 
   /// Whether to go on.
   HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count) {
-    if (!leaf_.load(first, count)) {
-      query_.error = leaf_.error();
-      return false;
-    }
+    if (!leaf_.load(first, count)) return fail();
     for (std::size_t group = 0; group < leaf_.groups(); ++group) {
+#if BOXTREE_FINDS_SPHERE_CONTACTS
+      if (contacts_.are_wanted()) {
+        if (!visit_contacts(group)) return false;
+        continue;
+      }
+#endif
       HWY_ALIGN float key[kWideChildren], last[kWideChildren];
       std::uint32_t near = 0;
       for (std::size_t part = 0; part < kParts; ++part) {
@@ -93,8 +97,7 @@ class CastLeaves {
                 lane, [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
                   query_.test(triangle, face, half);
                 })) {
-          query_.error = leaf_.error();
-          return false;
+          return fail();
         }
         if (query_.is_done()) return false;
         if (query_.t_max == before) continue;
@@ -105,8 +108,48 @@ class CastLeaves {
     return true;
   }
 
+  /// Once nothing is left to walk: gives the query what was put off. `walked`: how that ended.
+  [[nodiscard]] Errc finish(Errc walked) {
+#if BOXTREE_FINDS_SPHERE_CONTACTS
+    contacts_.visit_all();
+    if (query_.faces.stopped) return Errc::kOk;
+#endif
+    return walked;
+  }
+
  private:
-  void set_bound() { bound_ = filter_.bound(query_.t_max); }
+  // For bytes that are corrupt: what comes before them is still visited.
+  HWY_NOINLINE bool fail() {
+    const Errc error = leaf_.error();
+    if (finish(error) == error) query_.error = error;
+    return false;
+  }
+
+  void set_bound() {
+    bound_ = filter_.bound(query_.t_max);
+  }
+
+#if BOXTREE_FINDS_SPHERE_CONTACTS
+  // Visits contacts of a sphere with the triangles whose bounds it may touch, in their order: that
+  // of `key` in visit(), since what stays where it is touches at once.
+  HWY_NOINLINE bool visit_contacts(std::size_t group) {
+    std::uint32_t near = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      FloatVector enter = hn::Zero(Floats());
+      near |= advance_to_boxes(leaf_.bounds(group, part), enter) << (part * kLanes);
+    }
+    near &= leaf_.lanes(group);
+    if (near == 0) return true;
+    const bool is_read = for_each_bit(near, [&](std::uint32_t i) {
+      return leaf_.with_triangle(static_cast<std::uint32_t>(group * kWideChildren) + i,
+                                 [&](const Triangle& triangle, std::uint32_t face,
+                                     std::uint32_t half) { contacts_.add(triangle, face, half); });
+    });
+    if (!is_read) return fail();
+    contacts_.visit();
+    return !query_.is_done();
+  }
+#endif
 
   // Raises `from`, from which on the shape may touch triangles, up to where it does. Returns those
   // of `near` that it may touch up to `to`.
@@ -198,6 +241,9 @@ class CastLeaves {
   const CastFilter& filter_;
   MovingFloats shape_;
   LeafFloats leaf_;
+#if BOXTREE_FINDS_SPHERE_CONTACTS
+  SphereContacts contacts_{query_};
+#endif
   float bound_ = 0;
 };
 
@@ -242,8 +288,8 @@ Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, CastQuery& query,
 Errc walk_cast(const BoundTree& tree, CastQuery& query) {
   const CastFilter filter(query);
   CastLeaves leaves(tree, query, filter);
-  return with_wide_codec<Errc>(tree,
-                               [&](const auto& codec) { return walk(tree, codec, query, leaves); });
+  return leaves.finish(with_wide_codec<Errc>(
+      tree, [&](const auto& codec) { return walk(tree, codec, query, leaves); }));
 }
 #endif
 

@@ -23,6 +23,7 @@ Contact contact_of(const CastQuery& query, const CastCandidate& found,
   contact.point = frame.to_object(query.moving.shape.center + at.point);
   contact.normal = at.normal;
   contact.depth = at.depth * frame.scale;
+  contact.face_normal = found.face_normal;
   set_feature(query.tree, found, at.feature, contact);
   return contact;
 }

@@ -31,18 +31,18 @@ struct FaceWishes {
     return false;
   }
 
-  /// Calls visit(face) -> double with each of them that is wanted, the original first; it returns
-  /// the largest parameter that is still of interest, to which `t_max` is lowered, or a negative
-  /// number to stop. Errors: kNodeCorrupt.
-  template <class Visit>
+  /// Calls visit(face) -> double with each of them that is wanted, the original first, which
+  /// name(index) -> FaceRef names; it returns the largest parameter that is still of interest, to
+  /// which `t_max` is lowered, or a negative number to stop. Errors: kNodeCorrupt.
+  template <class Name, class Visit>
   [[nodiscard]] Errc visit_wanted(const BoundTree& tree, std::uint32_t index, double& t_max,
-                                  const Visit& visit) {
+                                  Name&& name, const Visit& visit) {
     const FaceWithCopies faces(tree, index);
     stopped = faces.count() - 1 > copies_left;
     if (stopped) return Errc::kNodeCorrupt;
     copies_left -= faces.count() - 1;
     for (std::uint32_t i = 0; i < faces.count() && !stopped; ++i) {
-      const FaceRef face = faces.face(i);
+      const FaceRef face = i == 0 ? name(index) : faces.face(i);
       if (has_filter() && !(*options->filter)(face)) continue;
       const double wanted_to = visit(face);
       stopped = !(wanted_to >= 0);

@@ -53,10 +53,13 @@ bool meet_wishes(RayTest& query, RayCandidate& candidate) noexcept {
   if (query.wishes->all == nullptr) {
     return !faces.has_filter() || faces.name_wanted(query.tree, index, candidate.face);
   }
-  query.error = faces.visit_wanted(query.tree, index, query.t_max, [&](const FaceRef& face) {
-    candidate.face = face;
-    return (*query.wishes->all)(query, candidate);
-  });
+  // One by one: a leaf seldom has two hits.
+  const auto name_face = [&](std::uint32_t of) { return face_ref(query.tree, of); };
+  query.error =
+      faces.visit_wanted(query.tree, index, query.t_max, name_face, [&](const FaceRef& face) {
+        candidate.face = face;
+        return (*query.wishes->all)(query, candidate);
+      });
   return false;
 }
 

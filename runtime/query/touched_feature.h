@@ -21,8 +21,7 @@ namespace boxtree {
                                        const Eigen::Vector3d& of_face, bool keeps_its_own,
                                        const Eigen::Vector3d& velocity) noexcept;
 
-/// Fills in what a CastHit or Contact, whose normal is known, says of the part of the triangle that
-/// is touched.
+/// Fills in what a CastHit or Contact says of the part of the triangle that is touched.
 template <class Hit>
 void set_feature(const BoundTree& tree, const CastCandidate& found, const TrianglePart& part,
                  Hit& hit) noexcept {
@@ -30,7 +29,6 @@ void set_feature(const BoundTree& tree, const CastCandidate& found, const Triang
   hit.feature = of_face.feature;
   hit.feature_index = of_face.index;
   hit.is_active = is_active(tree, found, of_face);
-  hit.face_normal = face_normal(found.triangle, hit.normal);
 }
 
 }  // namespace boxtree

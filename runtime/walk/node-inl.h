@@ -27,11 +27,16 @@ using FloatVector = hn::Vec<Floats>;
 inline constexpr std::size_t kLanes = hn::MaxLanes(Floats());
 inline constexpr std::size_t kParts = kWideChildren / kLanes;
 
+/// Bit i: lane i, of at most eight.
+template <class D>
+HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
+  alignas(8) std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, mask, bits);
+  return bits[0];
+}
 /// Bit i: lane i of the part.
 HWY_INLINE std::uint32_t bits_of(hn::Mask<Floats> mask) {
-  alignas(8) std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(Floats(), mask, bits);
-  return bits[0];
+  return bits_of(Floats(), mask);
 }
 
 /// A node in place, in memory of any alignment: fields are read one by one.

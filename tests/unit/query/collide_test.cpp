@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Contacts of shapes against extended precision: which triangles are touched, and how deep.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <set>
@@ -13,6 +15,7 @@
 
 #include <boxtree/boxtree.h>
 
+#include "tests/support/contact_bits.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -256,6 +259,105 @@ TEST(CollideWithoutSize, HasANormalAndNoDepth) {
       check(ConvexHull{none, at, {1, 0, 0, 0}});
     }
   }
+}
+
+std::vector<test::ContactBits> contacts_of(const Tree& tree, const Sphere& sphere,
+                                           std::size_t most = SIZE_MAX) {
+  std::vector<test::ContactBits> all;
+  EXPECT_TRUE(collide(tree, sphere, [&](const Contact& contact) {
+    all.push_back(test::bits_of(contact));
+    return all.size() < most;
+  }));
+  return all;
+}
+
+// A triangle of one of the kinds that need care.
+std::array<Eigen::Vector3f, 3> strange_triangle(std::mt19937_64& random, int kind) {
+  const auto unit = [&] { return std::uniform_real_distribution<float>(-1, 1)(random); };
+  const auto vector = [&] { return Eigen::Vector3f(unit(), unit(), unit()); };
+  const Eigen::Vector3f a = vector(), b = vector(), c = vector();
+  const float tiny = std::ldexp(1.0f, -3 * (kind / 8));
+  switch (kind % 8) {
+    case 0:
+      return {a, b, c};
+    case 1:
+      return {a, a + tiny * b, a + tiny * c};  // small
+    case 2:
+      return {a, b, a + 0.5f * (b - a) + tiny * c};  // nearly collinear
+    case 3:
+      return {a, a + tiny * b, c};  // a needle with a short first edge
+    case 4:
+      return {a, b, b + tiny * c};  // and with a short second one
+    case 5:
+      return {a, b, a};  // two corners in one point
+    case 6:
+      return {a, a, a};
+    default:
+      return {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(unit(), 0, 0),
+              Eigen::Vector3f(unit(), unit(), 0)};  // zeros
+  }
+}
+
+// Vectors compute several contacts together, doubles one: the same bits, for each store, and the
+// same that a visitor gets who stops early.
+TEST(CollideWithASphere, HasTheSameBitsByVectors) {
+  std::mt19937_64 random(11);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  std::vector<SourceMesh> meshes = test::all_kinds();
+  for (const double scale : {1.0, 0x1p-60, 0x1p40}) {
+    SourceMesh mesh;
+    mesh.name = "strange triangles";
+    for (std::uint32_t f = 0; f < 600; ++f) {
+      for (const Eigen::Vector3f& corner : strange_triangle(random, static_cast<int>(f) % 64)) {
+        for (const float x : corner) {
+          mesh.positions.f32.push_back(static_cast<float>(scale * double{x}));
+        }
+      }
+      mesh.faces.push_back({{3 * f, 3 * f + 1, 3 * f + 2, cooker::kNoCorner}});
+    }
+    meshes.push_back(std::move(mesh));
+  }
+  std::size_t count = 0, of_faces = 0;
+  for (const SourceMesh& mesh : meshes) {
+    SCOPED_TRACE(mesh.name);
+    const test::CookedTree plain = test::cook_tree(mesh, {CodecId::kPlainF32, GeometryId::kArrays});
+    const double size = plain.tree.bounds().diagonal().norm();
+    for (const test::Encoding& encoding : {test::Encoding{CodecId::kWide8, GeometryId::kArrays},
+                                           test::Encoding{CodecId::kWide8, GeometryId::kExact},
+                                           test::Encoding{CodecId::kWide4, GeometryId::kExact}}) {
+      const test::CookedTree wide = test::cook_tree(mesh, encoding);
+      for (int i = 0; i < 60; ++i) {
+        // Around a point of a triangle: a corner, one of an edge, one inside; or beside it.
+        const auto face = static_cast<std::uint32_t>(random() % wide.tree.face_count());
+        const auto corner = test::require(wide.tree.triangle({kNoFaceId, face}, 0)).corner;
+        const double s = i % 4 == 0 ? 0 : 0.5 + 0.5 * unit(),
+                     t = i % 4 < 2 ? 0 : s * (0.5 + 0.5 * unit());
+        const Eigen::Vector3d on =
+            corner[0] + s * (corner[1] - corner[0]) + t * (corner[2] - corner[1]);
+        const double off = i % 3 == 0 ? 0 : size * std::ldexp(1.0, -3 - i % 50);
+        const Eigen::Vector3d at = on + off * Eigen::Vector3d(unit(), unit(), unit());
+        double radius = size * std::ldexp(1.0, -1 - i % 9);
+        if (i % 5 == 0) radius = (at - corner[i % 3]).norm();  // that it may just touch
+        const Sphere sphere{at, radius};
+        auto expected = contacts_of(plain.tree, sphere);
+        auto found = contacts_of(wide.tree, sphere);
+        const auto in_order = found;
+        std::ranges::sort(expected);
+        std::ranges::sort(found);
+        ASSERT_EQ(found, expected)
+            << test::encoding_name(testing::TestParamInfo<test::Encoding>(encoding, 0)) << ' ' << i;
+        count += found.size();
+        for (const auto& contact : found) of_faces += contact[2] == 0 ? 1 : 0;
+        const std::size_t most = 1 + random() % 9;
+        if (most > in_order.size()) continue;
+        const std::vector first(in_order.begin(),
+                                in_order.begin() + static_cast<std::ptrdiff_t>(most));
+        ASSERT_EQ(contacts_of(wide.tree, sphere, most), first) << i;
+      }
+    }
+  }
+  EXPECT_GT(count, 20'000u);
+  EXPECT_GT(of_faces, 1'000u);
 }
 
 // Its radius is less than what the middle of its ends rounds.

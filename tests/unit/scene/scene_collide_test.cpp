@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Contacts of shapes in scenes against distances in extended precision over all placed triangles.
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <set>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,6 +15,7 @@
 #include <boxtree/boxtree.h>
 
 #include "runtime/scene/bound_scene.h"
+#include "tests/support/contact_bits.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
@@ -162,6 +166,36 @@ TEST_P(SceneCollide, AHullTouchesWhatItTouches) {
 INSTANTIATE_TEST_SUITE_P(Codecs, SceneCollide,
                          testing::Values(CodecId::kPlainF32, CodecId::kWide8, CodecId::kWide4),
                          test::test_name);
+
+// Of turned, sheared and mirrored instances: vectors compute several contacts together, doubles
+// one.
+TEST(SceneCollideCases, ASphereHasTheSameBitsByVectors) {
+  const std::vector<cooker::SourceMesh> meshes = {test::sphere(8, 12), test::torus(10, 14),
+                                                  test::slivers(60, 2), test::soup(40, 3)};
+  const cooker::SceneParts parts = test::random_parts(40, 4, 7, 3, 11);
+  const CookedScene plain = test::cook_scene(meshes, parts, {CodecId::kPlainF32});
+  const CookedScene wide = test::cook_scene(meshes, parts, {CodecId::kWide8});
+  const auto contacts_of = [](const Scene& scene, const Sphere& sphere) {
+    std::vector<std::pair<std::uint32_t, test::ContactBits>> all;
+    EXPECT_TRUE(collide(scene, sphere, [&](const SceneContact& contact) {
+      all.emplace_back(contact.instance, test::bits_of(contact));
+      return true;
+    }));
+    std::ranges::sort(all);
+    return all;
+  };
+  const Scene first = require(Scene::bind(plain.file)), second = require(Scene::bind(wide.file));
+  std::mt19937_64 random(3);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  std::size_t count = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Sphere sphere{{5 * unit(), 5 * unit(), 5 * unit()}, 0.3 * std::pow(8.0, unit())};
+    const auto found = contacts_of(second, sphere);
+    ASSERT_EQ(found, contacts_of(first, sphere)) << i;
+    count += found.size();
+  }
+  EXPECT_GT(count, 5'000u);
+}
 
 // The center of a sphere on a face of a mirrored instance: the front is where the pose maps it.
 TEST(SceneCollideCases, AMirrorKeepsTheFront) {
