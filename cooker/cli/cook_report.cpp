@@ -109,7 +109,8 @@ void add_contest(const CookedTree& cooked, std::string& text) {
         candidate.rejected.empty() ? "" : "  ", candidate.rejected);
   }
   text += fmt::format(
-      "    times: modelled means; boxes are {};\n"
+      "    times: means of a model that is the same on every machine: compare them with each other;\n"
+      "    boxes: {};\n"
       "    shallow: {}\n",
       kBoxMeaning, kShallowMeaning);
   // Codecs that share a reason stand together.

@@ -105,7 +105,7 @@ std::string to_text(const Page& page) {
     if (section.tables.empty() && !section.text.empty()) out += "  " + section.text + "\n";
     for (const PageConclusion& conclusion : section.conclusions) {
       out += "  " + conclusion.lead + " " + conclusion.text + "\n";
-      if (!conclusion.command.empty()) out += "    Make it with: " + conclusion.command + "\n";
+      if (!conclusion.command.empty()) out += "    In the folder of the mesh: " + conclusion.command + "\n";
     }
     for (const PageTable& table : section.tables) add_text(table, out);
   }
@@ -127,7 +127,7 @@ std::string to_html(const Page& page) {
       out += "<p class=\"conclusion\"><strong>" + escaped(conclusion.lead) + "</strong> " +
              escaped(conclusion.text);
       if (!conclusion.command.empty()) {
-        out += "<br/>Make it with: <code>" + words_of(conclusion.command) + "</code>";
+        out += "<br/>In the folder of the mesh: <code>" + words_of(conclusion.command) + "</code>";
       }
       out += "</p>\n";
     }

@@ -19,7 +19,7 @@ CONCLUSION = re.compile(
     r"([^.>]*): (wide8|wide4), (arrays|exact|grid)(?: (\d+))?\..{0,40}?"
     r"([\d.]+) bytes per triangle, a file of (\d+) bytes:.*?"
     r"(No position changes by a single bit|No point of the surface moves by more than).*?"
-    r"Make it with: <code>boxtree (cook [^<]*?)\s*<", re.DOTALL)
+    r"In the folder of the mesh: <code>boxtree (cook [^<]*?)\s*<", re.DOTALL)
 
 
 def write_strip(path, cells):
@@ -43,7 +43,7 @@ def check(boxtree, mesh, *options):
     page = html.unescape(re.sub("</?span>", "", pathlib.Path("page.html").read_text(encoding="utf-8")))
     figures = json.loads(pathlib.Path("figures.json").read_text(encoding="utf-8"))["meshes"][0]
     found = CONCLUSION.findall(page)
-    assert len(found) == page.count("Make it with:") > 0, (len(found), page.count("Make it with:"))
+    assert len(found) == page.count("In the folder of the mesh:") > 0, (len(found), page.count("Make it with:"))
     stores = []
     for roles, codec, store, bits, each, size, surface, command in found:
         cook, name, output, made, *options = shlex.split(command)

@@ -101,7 +101,7 @@ ln -s "$source"/{CMakeLists.txt,cmake,format,runtime} "$work/alone"
 (cd "$work/alone" && bash -eu "$work/commands.sh" && ./ground) >"$work/said" 2>&1 || fail "without a build system: $(cat "$work/said")"
 tail -1 "$work/said" | diff - <(echo "$expected") || fail "without a build system: prints something else (left)"
 sed -n '/^## Use it from C$/,/^## Use it without/p' "$source/docs/GUIDE.md" >"$work/section.md"
-{ echo 'cmake_minimum_required(VERSION 3.25)'; section cmake; } >"$work/empty/CMakeLists.txt"
+section cmake >"$work/empty/CMakeLists.txt"
 quiet cmake -S "$work/empty" -B "$work/empty/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_C_COMPILER=gcc
 quiet cmake --build "$work/empty/build"
 (cd "$work/empty" && ./build/ground) | diff - <(section text) || fail "the guide's CMake project prints something else (left)"

@@ -335,6 +335,21 @@ silent 1 'find_package(boxtree CONFIG QUIET COMPONENTS runtime paper blob c cli 
 silent 0 'find_package(boxtree CONFIG QUIET COMPONENTS wide5)'
 silent 0 'find_package(boxtree CONFIG QUIET)' -DCMAKE_PREFIX_PATH=/nothing
 
+# A project of an old version finds it; CMake says of one that states none, as lines of an example do not, what is missing.
+for stated in 'cmake_minimum_required(VERSION 3.2)' ''; do
+  rm -rf "$work/old"
+  mkdir "$work/old"
+  printf '%s\nproject(old LANGUAGES NONE)\nfind_package(boxtree CONFIG REQUIRED COMPONENTS runtime cli)\n%s\n' "$stated" \
+    'add_library(meshes INTERFACE)
+boxtree_add_cooked_assets(TARGET meshes MESHES ../meshes/level.obj ../meshes/crate.obj)' >"$work/old/CMakeLists.txt"
+  if [ -n "$stated" ]; then configured old; elif configure old; then fail "this CMake needs no version"; fi
+  if [ "$(grep -c 'CMake Error' "$work/log")" -ne "$([ -n "$stated" ] && echo 0 || echo 1)" ] ||
+    grep -q boxtreeConfig "$work/log"; then
+    cat "$work/log"
+    fail "unclear without a version: '$stated'"
+  fi
+done
+
 refused 'wide5: there is no such component: there are runtime, paper, blob, c, cli, codecs (plain-f32, plain-f16, ' <<<'find_package(boxtree CONFIG REQUIRED COMPONENTS ray wide5)'
 # Versions 0.x are compatible within x.
 minor=${version%.*}
