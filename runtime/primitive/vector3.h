@@ -41,22 +41,16 @@ namespace boxtree {
 /// m v.
 [[nodiscard]] inline Eigen::Vector3d product(const Eigen::Matrix3d& m,
                                              const Eigen::Vector3d& v) noexcept {
-  Eigen::Vector3d out;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    out[i] = (m(i, 0) * v[0] + m(i, 1) * v[1]) + m(i, 2) * v[2];
-  }
-  return out;
+  return {(m(0, 0) * v[0] + m(0, 1) * v[1]) + m(0, 2) * v[2],
+          (m(1, 0) * v[0] + m(1, 1) * v[1]) + m(1, 2) * v[2],
+          (m(2, 0) * v[0] + m(2, 1) * v[1]) + m(2, 2) * v[2]};
 }
 
 /// a b.
 [[nodiscard]] inline Eigen::Matrix3d matrix_product(const Eigen::Matrix3d& a,
                                                     const Eigen::Matrix3d& b) noexcept {
   Eigen::Matrix3d out;
-  for (Eigen::Index j = 0; j < 3; ++j) {
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      out(i, j) = (a(i, 0) * b(0, j) + a(i, 1) * b(1, j)) + a(i, 2) * b(2, j);
-    }
-  }
+  for (Eigen::Index j = 0; j < 3; ++j) out.col(j) = product(a, b.col(j));
   return out;
 }
 
@@ -64,18 +58,12 @@ namespace boxtree {
 /// of three entries of the matrix overflows or underflows.
 [[nodiscard]] inline double invert_by_cofactors(const Eigen::Matrix3d& m,
                                                 Eigen::Matrix3d& inverse) noexcept {
-  Eigen::Matrix3d cofactor;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      const Eigen::Index r = (i + 1) % 3, s = (i + 2) % 3;
-      const Eigen::Index c = (j + 1) % 3, d = (j + 2) % 3;
-      cofactor(i, j) = m(r, c) * m(s, d) - m(r, d) * m(s, c);
-    }
-  }
-  const double determinant =
-      (m(0, 0) * cofactor(0, 0) + m(0, 1) * cofactor(0, 1)) + m(0, 2) * cofactor(0, 2);
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) inverse(i, j) = cofactor(j, i) / determinant;
+  // The cofactors of a column.
+  const Eigen::Vector3d x = m.col(0), y = m.col(1), z = m.col(2);
+  const Eigen::Vector3d of_x = cross(y, z), of_y = cross(z, x), of_z = cross(x, y);
+  const double determinant = (x[0] * of_x[0] + y[0] * of_y[0]) + z[0] * of_z[0];
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    inverse.col(j) = Eigen::Vector3d(of_x[j], of_y[j], of_z[j]) / determinant;
   }
   return determinant;
 }

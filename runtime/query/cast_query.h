@@ -31,7 +31,7 @@ struct CastLine {
 };
 
 /// A touch: `s`, a lower bound, in parameters of MovingShape, and the triangle where it is compared
-/// with the shape.
+/// with the shape, unspecified where the contact is known (kContacts).
 struct CastCandidate {
   bool is_hit = false;  // if false, the rest is unspecified
   double s = 0;
