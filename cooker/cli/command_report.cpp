@@ -77,6 +77,10 @@ std::ptrdiff_t count_standard_outputs(const ReportArguments& arguments) {
                        [](const Output& output) { return is_standard_stream(output.path); });
 }
 
+bool prints_summary(const ReportArguments& arguments) {
+  return !arguments.json && !arguments.quiet && count_standard_outputs(arguments) == 0;
+}
+
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& meshes) {
   std::vector<std::string> names;
   names.reserve(meshes.size());
@@ -220,7 +224,7 @@ int write_report(const ReportArguments& arguments, const Page& page, const Json&
   }
   if (arguments.json) {
     print(figures);
-  } else if (!arguments.quiet && count_standard_outputs(arguments) == 0) {
+  } else if (prints_summary(arguments)) {
     fmt::print("{}", to_text(summary));
     for (const Written& file : written) {
       fmt::print("wrote {}, {} bytes\n", shown(file.path.string()), file.bytes);
@@ -341,7 +345,8 @@ int run_tradeoff(const ReportArguments& arguments) {
   if (!report) return fail(report.error());
   for (const MeshTradeoff& mesh : report->meshes) {
     const std::string disturbance = disturbance_in_words(mesh);
-    if (!disturbance.empty()) warn(mesh.name + ": " + disturbance);
+    // The summary says it, too.
+    if (!disturbance.empty() && !prints_summary(arguments)) warn(mesh.name + ": " + disturbance);
   }
   std::vector<Written> written;
   if (Status status = write_text(arguments.csv, to_csv(*report), written); !status)
@@ -429,8 +434,10 @@ void add_report_command(Command& program, int& status) {
       "Show which encoding to use for meshes: bytes, times and errors\n"
       "Of meshes alone: what a profile leaves out, cook --profile FILE --why tells. The page has "
       "grids of so many bits, and with --tolerance that of a tolerance of your own.\n"
-      "Every encoding is measured: that takes half a minute for 500 triangles, a minute for 5000, "
-      "with --quick some seconds. Standard error tells the steps, but with --quiet.");
+      "Every encoding is measured: that takes half a minute for 500 triangles, a minute for 5000 "
+      "and "
+      "in proportion above, with --quick some seconds. Standard error tells the steps, but with "
+      "--quiet.");
   command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
   Option* paper = command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_file("-o,--output", arguments->output, Values::kFiles,

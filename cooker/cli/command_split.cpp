@@ -4,8 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -48,10 +52,20 @@ struct Chosen {
   std::filesystem::path output;
 };
 
-// Of all members, or of those that the trees are in, in the order of the pack.
+// Of all members, or of those that are named by themselves or by a tree, in the order of the pack.
 Result<std::vector<Chosen>> choose_members(const SplitArguments& arguments, const File& pack) {
+  std::map<std::string, std::uint32_t, std::less<>> first_trees;  // of each member
+  if (!arguments.trees.empty()) {
+    for_each_member(pack, [&](std::string_view name, std::span<const std::uint32_t> trees) {
+      first_trees.emplace(name, trees.front());
+    });
+  }
   std::vector<std::uint32_t> wanted;
   for (const std::string& tree : arguments.trees) {
+    if (const auto member = first_trees.find(tree); member != first_trees.end()) {
+      wanted.push_back(member->second);
+      continue;
+    }
     const Result<std::uint32_t> number = find_tree(pack, {tree});
     if (!number) return in_file(input_name(arguments.file), number.error());
     wanted.push_back(*number);
@@ -174,7 +188,8 @@ void add_split_command(Command& program, int& status) {
   command
       .add_option(
           "--tree", arguments->trees,
-          "The file that has this tree alone: name or number; may be given again [all files]")
+          "Only the file that is called so or has the tree: name or number; may be given again "
+          "[all files]")
       ->type_name("TREE");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command.add_flag("--json", arguments->json, "Print one JSON document");

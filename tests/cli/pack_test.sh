@@ -57,6 +57,10 @@ expect 0 "$boxtree" split all.bxt --tree tree -o one
 same "$(ls one)" tree.bxt
 expect 0 "$boxtree" split - --tree level/crate -o one <all.bxt
 cmp a/level.bxt one/level.bxt
+# Or by what it is called itself.
+expect 0 "$boxtree" split all.bxt --tree level --tree rock -o two
+same "$(cd two && echo *)" 'level.bxt rock.bxt'
+cmp a/level.bxt two/level.bxt
 
 # info tells of each tree what it tells of its file.
 expect 0 "$boxtree" info all.bxt --json
