@@ -41,6 +41,14 @@ std::vector<std::byte> small_file(const Encoding& encoding) {
   return cooker::serialize(std::span(&*cooked, 1), "{}\n");
 }
 
+// Where a part of the file's tree touches a part of itself: all faces with themselves would take
+// four fifths of the time.
+const Pose kPartly = [] {
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(1.25, 0.5, 0.125);
+  return pose;
+}();
+
 // Opens, proves and queries everything; whatever comes back, it must come back.
 void exercise(Bytes bytes) {
   const Result<File> file = File::open(bytes);
@@ -55,6 +63,7 @@ void exercise(Bytes bytes) {
     set.point = {3, 2, 1};
     set.radius = 4;
     set.far.translation() = Eigen::Vector3d(4, 5, 1);
+    set.near = kPartly;
     set.node_budget = 100;
     return test::tree_queries(set);
   }();
@@ -63,6 +72,17 @@ void exercise(Bytes bytes) {
     static_cast<void>(tree->user_data({face, face}));
   }
   for (const test::TreeQuery& query : queries) static_cast<void>(query.run_query(*tree, *tree, {}));
+}
+
+TEST(MutationQueries, TouchAPartOfTheTree) {
+  const std::vector<std::byte> bytes = small_file({CodecId::kWide8, GeometryId::kExact});
+  const File file = *File::open(bytes);
+  const Tree tree = *Tree::bind(file);
+  std::size_t pairs = 0;
+  ASSERT_TRUE(overlap_pairs(tree, Pose::Identity(), tree, kPartly,
+                            [&](const FacePair&) { return ++pairs > 0; }));
+  EXPECT_GT(pairs, 5u);
+  EXPECT_LT(pairs, 4 * std::size_t{tree.face_count()});
 }
 
 class Mutation : public testing::TestWithParam<Encoding> {};
