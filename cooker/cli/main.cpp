@@ -14,6 +14,7 @@
 #include "cooker/cli/exit_status.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/program_start.h"
+#include "cooker/farm/cooker_identity.h"
 #include "cooker/farm/import_libraries.h"
 #include "cooker/import/assimp_import.h"
 #include "cooker/version.h"
@@ -33,9 +34,9 @@ namespace {
 std::string version_text() {
   using namespace boxtree;
   const std::string& libraries = cooker::import_libraries();
-  return fmt::format("boxtree {}\nassimp {}, liblzma {}, zstd {}{}{}", cooker::kVersion,
-                     cooker::assimp_version(), lzma_version(), zstd_version(),
-                     libraries.empty() ? "" : "\n", libraries);
+  return fmt::format("boxtree {}, sources {}\nassimp {}, liblzma {}, zstd {}{}{}", cooker::kVersion,
+                     cooker::kSourceDigest, cooker::assimp_version(), lzma_version(),
+                     zstd_version(), libraries.empty() ? "" : "\n", libraries);
 }
 
 }  // namespace
