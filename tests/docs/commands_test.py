@@ -21,7 +21,7 @@ import tempfile
 from blocks import blocks_of
 
 # What installs packages or builds for long, mostly for another system, as tests/platforms/run.sh does.
-BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.sh|cmake -S \. -B build-(deb|windows|arm64) )")
+BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.sh|cmake -S \. -B build-(deb|windows|windows-cli|arm64) )")
 
 # What this test itself writes.
 WRITTEN_HERE = {"make/", "ninja/", "program", "program.cpp", "program.out", "query.out"}
