@@ -113,9 +113,7 @@ class RaySetUp {
   static constexpr int kLargestExponent = 500;
 
   static HWY_INLINE std::uint32_t bits(DoubleMask mask, std::size_t first) {
-    alignas(8) std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(Doubles(), mask, bytes);
-    return static_cast<std::uint32_t>(bytes[0]) << first;
+    return bits_of(Doubles(), mask) << first;
   }
   static HWY_INLINE void store(DoubleVector x, float* out) {
     hn::Store(hn::DemoteTo(Halves(), x), Halves(), out);

@@ -41,7 +41,7 @@ class SphereContacts {
         center_(query.moving.center_at(0)),
         are_wanted_(query.wanted == CastQuery::Wanted::kContacts && query.moving.shape.axes == 0 &&
                     query.moving.shape.hull == nullptr) {
-    query.set_triangle({}, 0, 0, touch_);
+    if (are_wanted_) query.set_triangle({}, 0, 0, touch_);
   }
 
   /// Whether contacts of that kind are looked for.
