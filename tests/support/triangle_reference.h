@@ -63,7 +63,8 @@ inline HullPoint closest_of_all(std::span<const LongVector> d) {
 
 // The point of the hull of points that is closest to the origin. Looked for among few of them
 // (Gilbert, Johnson and Keerthi, 1988) and taken where it proves itself: all points are beyond the
-// plane through it that it is orthogonal to, up to rounding. Else all of them are tried.
+// plane through it that it is orthogonal to, up to rounding. Else all of them are tried. Ends,
+// since each few have a point that is nearer than those before, and there are finitely many.
 inline LongVector closest_of_hull(std::span<const LongVector> d) {
   long double size = 0;
   for (const LongVector& p : d) size = std::max(size, p.cwiseAbs().maxCoeff());
