@@ -435,9 +435,8 @@ void add_report_command(Command& program, int& status) {
       "Of meshes alone: what a profile leaves out, cook --profile FILE --why tells. The page has "
       "grids of so many bits, and with --tolerance that of a tolerance of your own.\n"
       "Every encoding is measured: that takes half a minute for 500 triangles, a minute for 5000 "
-      "and "
-      "in proportion above, with --quick some seconds. Standard error tells the steps, but with "
-      "--quiet.");
+      "and in proportion above, with --quick some seconds. Standard error tells the steps, but "
+      "with --quiet.");
   command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
   Option* paper = command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_file("-o,--output", arguments->output, Values::kFiles,

@@ -43,7 +43,8 @@ def check(boxtree, mesh, *options):
     page = html.unescape(re.sub("</?span>", "", pathlib.Path("page.html").read_text(encoding="utf-8")))
     figures = json.loads(pathlib.Path("figures.json").read_text(encoding="utf-8"))["meshes"][0]
     found = CONCLUSION.findall(page)
-    assert len(found) == page.count("In the folder of the mesh:") > 0, (len(found), page.count("Make it with:"))
+    commands = page.count("In the folder of the mesh:")
+    assert len(found) == commands > 0, (len(found), commands)
     stores = []
     for roles, codec, store, bits, each, size, surface, command in found:
         cook, name, output, made, *options = shlex.split(command)
