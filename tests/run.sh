@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds and runs every test. The last line counts them.
 #   tests/run.sh [--all | PART...]   [release]
-#   release         every test
+#   release         every test of one build
+#   builds          the runtime in other builds: shared, without optimisation, with parts left out
 #   asan-ubsan      all but those labelled "figures", with sanitizers and the assertions of libraries
 #   scalar          every test without vectors
 #   tsan            what runs on several threads, with ThreadSanitizer
@@ -11,7 +12,7 @@
 #   --all           all of them: some hours on two cores
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all="release asan-ubsan scalar tsan compare-builds platforms"
+all="release builds asan-ubsan scalar tsan compare-builds platforms"
 parts=${*:-release}
 [ "$parts" = --all ] && parts=$all
 for part in $parts; do
@@ -27,11 +28,11 @@ install_missing $BUILD_PACKAGES $SAMPLE_PACKAGES $TEST_PACKAGES $PEER_PACKAGES
 
 passed=0 failed=0 skipped=0
 
-# run_preset NAME: configures, builds and tests one preset and adds up its tests.
+# run_preset NAME [BUILD]: configures and builds one preset, that of the tests or BUILD, runs its tests and adds them up.
 run_preset() {
-  local junit=$PWD/build/junit-$1.xml status=0
-  cmake --preset "$1" -DBOXTREE_BUILD_TESTS=ON >/dev/null
-  cmake --build --preset "$1"
+  local junit=$PWD/build/junit-$1.xml build=${2:-$1} status=0
+  cmake --preset "$build" -DBOXTREE_BUILD_TESTS=ON >/dev/null
+  cmake --build --preset "$build"
   ctest --preset "$1" --output-on-failure --output-junit "$junit" || status=$?
   local tests failures skips
   tests=$(sed -n 's/.*<testsuite.* tests="\([0-9]*\)".*/\1/p;s/^[[:space:]]*tests="\([0-9]*\)".*/\1/p' "$junit" | head -1)
@@ -73,6 +74,7 @@ platforms() {
 mkdir -p build
 for part in $parts; do
   case $part in
+    builds) run_preset builds release ;;
     compare-builds) compare_builds ;;
     platforms) platforms ;;
     asan-ubsan)

@@ -5,7 +5,8 @@
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-bytes() { strip -o "$work/stripped" "$1" && size "$work/stripped" | awk 'NR == 2 {print $4}'; }
+# shellcheck source=tests/size/measure.sh
+. "$(dirname "$0")/measure.sh"
 less=$(bytes "$1")
 shift
 for program in "$@"; do
