@@ -7,11 +7,11 @@
 #include <exception>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <boxtree/boxtree.h>
@@ -20,6 +20,7 @@
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/coincident.h"
 #include "tests/support/meshes.h"
+#include "tests/support/program_options.h"
 #include "tests/support/require.h"
 
 namespace boxtree::bench {
@@ -117,10 +118,10 @@ void print(const std::string& mesh, CodecId codec, const Row& row, const Row& or
 int main(int argc, char** argv) {
   unsigned faces = 20'000;
   std::vector<std::string> codecs = {"wide8", "wide4", "plain-f32"};
-  CLI::App app("Times queries of coincident and coplanar faces.");
-  app.add_option("--faces", faces, "Of each mesh, about")->capture_default_str();
-  app.add_option("--codecs", codecs, "Names of codecs")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  boxtree::test::ProgramOptions program("Times queries of coincident and coplanar faces.");
+  program.add("--faces", faces, "Of each mesh, about").shows_default();
+  program.add("--codecs", codecs, "Names of codecs").shows_default();
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   try {
     using namespace boxtree;
     using namespace boxtree::bench;

@@ -8,8 +8,8 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +17,7 @@
 #include "cooker/import/import.h"
 #include "tests/bench/exact_answers.h"
 #include "tests/bench/libraries.h"
+#include "tests/support/program_options.h"
 
 namespace boxtree::bench {
 namespace {
@@ -30,11 +31,18 @@ struct Arguments {
   std::string builder = "sah";
   std::vector<std::string> queries = {"single", "shapes", "pairs", "distances", "tumble"};
   bool quick = false;
+  bool answers = false;
   bool json = false;
 };
 
 constexpr cooker::WorkloadSize kFull{.camera = 512, .segments = 200'000};
 constexpr cooker::WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 20, 128, 20'000};
+constexpr cooker::WorkloadSize kAnswers{2'000, 300, 300, 20, 20, 32, 2'000};
+
+const cooker::WorkloadSize& full_size(const Arguments& arguments) {
+  if (arguments.answers) return kAnswers;
+  return arguments.quick ? kQuick : kFull;
+}
 
 // Collects rows of one library on one mesh.
 class Rows {
@@ -350,11 +358,11 @@ bool is_selected(const Arguments& arguments, const char* kind) {
 
 std::size_t shape_count(const Arguments& arguments) {
   if (!is_selected(arguments, "shapes")) return 0;
-  return (arguments.quick ? kQuick : kFull).boxes;
+  return full_size(arguments).boxes;
 }
 
 cooker::WorkloadSize workload_size(const Arguments& arguments) {
-  cooker::WorkloadSize size = arguments.quick ? kQuick : kFull;
+  cooker::WorkloadSize size = full_size(arguments);
   if (!is_selected(arguments, "single")) size.boxes = size.points = size.camera = size.segments = 0;
   if (!is_selected(arguments, "single") && !is_selected(arguments, "shapes")) size.rays = 0;
   if (!is_selected(arguments, "pairs")) size.poses = 0;
@@ -434,29 +442,32 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   boxtree::bench::Arguments arguments;
-  CLI::App app(
+  boxtree::test::ProgramOptions program(
       "Sizes, times and answers of all codecs, the original and other libraries, in one run");
-  app.add_option("meshes", arguments.meshes, "Mesh files")->required();
-  app.add_option("--only", arguments.only, "A library, or library:variant; may be repeated [all]")
-      ->allow_extra_args(false);
-  app.add_option("--runs", arguments.runs, "Runs whose median counts; one more goes before")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_option("--queries", arguments.queries,
-                 "single (rays, casts of spheres, boxes, points), shapes (other casts, overlaps "
-                 "and contacts "
-                 "of shapes), pairs, distances or tumble; may be repeated [all]")
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember({"single", "shapes", "pairs", "distances", "tumble"}));
-  app.add_option("--tumble", arguments.tumble_steps,
-                 "Protocol P1 with so many turns at each of 20 distances [none]");
-  app.add_option("--longest-edge", arguments.longest_edge, "Scale the bounds of meshes to this");
-  app.add_option("--builder", arguments.builder, "Builder of our trees")
-      ->check(CLI::IsMember({"sah", "paper"}))
-      ->capture_default_str();
-  app.add_flag("--quick", arguments.quick, "A tenth of the queries");
-  app.add_flag("--json", arguments.json, "Print one JSON document");
-  CLI11_PARSE(app, argc, argv);
+  program.add("meshes", arguments.meshes, "Mesh files").required();
+  program.add("--only", arguments.only, "A library, or library:variant; may be repeated [all]")
+      .one_value_each();
+  program.add("--runs", arguments.runs, "Runs whose median counts; one more goes before")
+      .between(1, 1000)
+      .shows_default();
+  program
+      .add("--queries", arguments.queries,
+           "single (rays, casts of spheres, boxes, points), shapes (other casts, overlaps "
+           "and contacts "
+           "of shapes), pairs, distances or tumble; may be repeated [all]")
+      .one_value_each()
+      .one_of({"single", "shapes", "pairs", "distances", "tumble"});
+  program.add("--tumble", arguments.tumble_steps,
+              "Protocol P1 with so many turns at each of 20 distances [none]");
+  program.add("--longest-edge", arguments.longest_edge, "Scale the bounds of meshes to this");
+  program.add("--builder", arguments.builder, "Builder of our trees")
+      .one_of({"sah", "paper"})
+      .shows_default();
+  program.add_flag("--quick", arguments.quick, "A tenth of the queries");
+  program.add_flag("--answers", arguments.answers,
+                   "So few queries that times mean nothing, to see who answers what");
+  program.add_flag("--json", arguments.json, "Print one JSON document");
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   try {
     return boxtree::bench::run(arguments);
   } catch (const std::exception& error) {

@@ -22,7 +22,7 @@ awk 'BEGIN {
     printf "f %d %d %d\nf %d %d %d\n", p, q, p + points, q, q + points, p + points
   }
 }' >"$mesh"
-"$peers" "$mesh" --quick --runs 1 --tumble 1 --json >"$rows" 2>/dev/null
+"$peers" "$mesh" --answers --runs 1 --tumble 1 --json >"$rows" 2>/dev/null
 
 # none FILTER WHY: no row may match.
 none() {

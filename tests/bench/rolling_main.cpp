@@ -7,13 +7,14 @@
 #include <algorithm>
 #include <btBulletDynamicsCommon.h>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "tests/support/cooked.h"
+#include "tests/support/program_options.h"
 #include "tests/support/rolling.h"
 
 namespace boxtree::rolling {
@@ -197,12 +198,13 @@ void print_floor(const SourceMesh& mesh) {
 }  // namespace boxtree::rolling
 
 int main(int argc, char** argv) {
-  CLI::App app("Bodies on a flat floor of random triangles, by boxtree and by Bullet.");
+  boxtree::test::ProgramOptions program(
+      "Bodies on a flat floor of random triangles, by boxtree and by Bullet.");
   unsigned cells = 71;
-  app.add_option("--cells", cells, "Of the floor, along each side, two triangles each")
-      ->check(CLI::Range(2u, 2000u))
-      ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  program.add("--cells", cells, "Of the floor, along each side, two triangles each")
+      .between(2u, 2000u)
+      .shows_default();
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   gContactAddedCallback = boxtree::rolling::adjust_contact;
   boxtree::cooker::SourceMesh quad = boxtree::rolling::floor_of(1, boxtree::rolling::flat);
   quad.faces = {{{0, 1, 3, 2}}};

@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +20,7 @@
 #include "cooker/report/page.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/bench/generated_mesh.h"
+#include "tests/support/program_options.h"
 #include "tests/support/require.h"
 
 namespace boxtree::bench {
@@ -212,19 +213,20 @@ void run(Arguments arguments) {
 
 int main(int argc, char** argv) {
   boxtree::bench::Arguments arguments;
-  CLI::App app("Times of closest-hit rays and first contacts against the size of the mesh.");
-  app.add_option("meshes", arguments.meshes, "Mesh files beside generated terrain and city");
-  app.add_option("--sizes", arguments.sizes, "Triangles of the generated meshes")->delimiter(',');
-  app.add_option("--codec", arguments.codec, "wide8 or wide4")
-      ->check(CLI::IsMember({"wide8", "wide4"}))
-      ->capture_default_str();
-  app.add_option("--runs", arguments.runs, "Runs whose median counts; one more goes before")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--html", arguments.html, "Write a page with tables and plots");
-  app.add_flag("--quick", arguments.quick, "Small meshes and few queries");
-  app.add_flag("--json", arguments.json, "Print one JSON document");
-  CLI11_PARSE(app, argc, argv);
+  boxtree::test::ProgramOptions program(
+      "Times of closest-hit rays and first contacts against the size of the mesh.");
+  program.add("meshes", arguments.meshes, "Mesh files beside generated terrain and city");
+  program.add("--sizes", arguments.sizes, "Triangles of the generated meshes").separated_by(',');
+  program.add("--codec", arguments.codec, "wide8 or wide4")
+      .one_of({"wide8", "wide4"})
+      .shows_default();
+  program.add("--runs", arguments.runs, "Runs whose median counts; one more goes before")
+      .between(1, 1000)
+      .shows_default();
+  program.add("--html", arguments.html, "Write a page with tables and plots");
+  program.add_flag("--quick", arguments.quick, "Small meshes and few queries");
+  program.add_flag("--json", arguments.json, "Print one JSON document");
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   try {
     boxtree::bench::run(arguments);
   } catch (const std::exception& error) {

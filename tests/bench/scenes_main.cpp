@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +18,7 @@
 #include "tests/bench/generated_mesh.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
+#include "tests/support/program_options.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
 
@@ -312,15 +313,17 @@ void run(const Arguments& arguments) {
 
 int main(int argument_count, char** argument_values) {
   boxtree::bench::Arguments arguments;
-  CLI::App app{"A level of placed props as a scene and as one tree, times and bytes in one run"};
-  app.add_option("--instances", arguments.instances)->check(CLI::Range(1, 100'000));
-  app.add_option("--props", arguments.props)->check(CLI::Range(1, 1000));
-  app.add_option("--spacing", arguments.spacing, "Metres between props of about 1.5 metres");
-  app.add_option("--codec", arguments.codec)->check(CLI::IsMember({"wide8", "wide4"}));
-  app.add_option("--queries", arguments.queries)->check(CLI::Range(10, 10'000'000));
-  app.add_option("--rounds", arguments.rounds)->check(CLI::Range(1, 1000));
-  app.add_flag("--json", arguments.json);
-  CLI11_PARSE(app, argument_count, argument_values);
+  boxtree::test::ProgramOptions program{
+      "A level of placed props as a scene and as one tree, times and bytes in one run"};
+  program.add("--instances", arguments.instances).between(1, 100'000);
+  program.add("--props", arguments.props).between(1, 1000);
+  program.add("--spacing", arguments.spacing, "Metres between props of about 1.5 metres");
+  program.add("--codec", arguments.codec).one_of({"wide8", "wide4"});
+  program.add("--queries", arguments.queries).between(10, 10'000'000);
+  program.add("--rounds", arguments.rounds).between(1, 1000);
+  program.add_flag("--json", arguments.json);
+  if (const std::optional<int> status = program.parse(argument_count, argument_values))
+    return *status;
   try {
     boxtree::bench::run(arguments);
     return 0;

@@ -15,13 +15,13 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "runtime/primitive/convex_points.h"
 #include "runtime/primitive/moving_shape.h"
 #include "runtime/primitive/penetration.h"
 #include "runtime/primitive/vector3.h"
+#include "tests/support/program_options.h"
 #include "tests/support/shape_reference.h"
 
 namespace boxtree::oracle {
@@ -318,14 +318,15 @@ int run(std::uint64_t count, std::uint32_t degenerate, std::uint64_t seed,
 }  // namespace boxtree::oracle
 
 int main(int argc, char** argv) {
-  CLI::App app("Casts and contacts of single triangles against extended precision");
+  boxtree::test::ProgramOptions program(
+      "Casts and contacts of single triangles against extended precision");
   std::uint64_t count = 2000, seed = 1;
   std::vector<std::string> shapes;
-  app.add_option("--cases", count, "Of each shape")->capture_default_str();
+  program.add("--cases", count, "Of each shape").shows_default();
   std::uint32_t degenerate = 50;
-  app.add_option("--degenerate", degenerate, "So many of a hundred")->capture_default_str();
-  app.add_option("--seed", seed)->capture_default_str();
-  app.add_option("--shape", shapes, "sphere, capsule, box or hull [all]");
-  CLI11_PARSE(app, argc, argv);
+  program.add("--degenerate", degenerate, "So many of a hundred").shows_default();
+  program.add("--seed", seed).shows_default();
+  program.add("--shape", shapes, "sphere, capsule, box or hull [all]");
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   return boxtree::oracle::run(count, degenerate, seed, shapes);
 }

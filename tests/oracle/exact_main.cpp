@@ -9,11 +9,11 @@
 #include <limits>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/oracle/exact/families.h"
+#include "tests/support/program_options.h"
 
 namespace boxtree::oracle {
 namespace {
@@ -143,19 +143,18 @@ int main_of(int argc, char** argv) {
   Options options;
   std::vector<std::string> names;
   for (const Family& family : all_families()) names.emplace_back(family.name);
-  CLI::App app{"Compares the answers of every codec and store with exact arithmetic."};
-  app.add_option("--answers", options.answers, "Answers to compare, in all families together")
-      ->capture_default_str();
-  app.add_option("--seed", options.seed, "Meshes and queries depend on it alone")
-      ->capture_default_str();
-  app.add_option("--family", options.families, "Families to run [all but hulls]")
-      ->check(CLI::IsMember(names));
-  app.add_option("--only", options.only, "One case by its number");
-  app.add_option("--json", options.json, "Write what was found to this file");
-  app.add_flag("--keep-going", options.keep_going,
-               fmt::format("Do not end a family after {} wrong answers", kEnoughWrong));
-  app.add_flag("--verbose", options.verbose, "Print whole meshes");
-  CLI11_PARSE(app, argc, argv);
+  boxtree::test::ProgramOptions program{
+      "Compares the answers of every codec and store with exact arithmetic."};
+  program.add("--answers", options.answers, "Answers to compare, in all families together")
+      .shows_default();
+  program.add("--seed", options.seed, "Meshes and queries depend on it alone").shows_default();
+  program.add("--family", options.families, "Families to run [all but hulls]").one_of(names);
+  program.add("--only", options.only, "One case by its number");
+  program.add("--json", options.json, "Write what was found to this file");
+  program.add_flag("--keep-going", options.keep_going,
+                   fmt::format("Do not end a family after {} wrong answers", kEnoughWrong));
+  program.add_flag("--verbose", options.verbose, "Print whole meshes");
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   print_whole_meshes(options.verbose);
   return run(options);
 }

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <exception>
 #include <numeric>
+#include <optional>
 #include <random>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "tests/bench/libraries.h"
@@ -17,6 +17,7 @@
 #include "tests/oracle/pair_tester.h"
 #include "tests/oracle/shape_tester.h"
 #include "tests/robustness/mesh_kinds.h"
+#include "tests/support/program_options.h"
 #include "tests/unit/primitive/triangle_cases.h"
 
 namespace boxtree::test {
@@ -301,11 +302,11 @@ std::uint64_t count_leaks(std::size_t count) {
 
 int main(int argc, char** argv) {
   std::size_t pairs = 20'000, rays = 20'000, shapes = 1'000;
-  CLI::App app("Ours and other libraries before exact arithmetic.");
-  app.add_option("--pairs", pairs, "triangle pairs of each family [20000]");
-  app.add_option("--rays", rays, "rays at each closed mesh [20000]");
-  app.add_option("--shapes", shapes, "shapes of each kind [1000]");
-  CLI11_PARSE(app, argc, argv);
+  boxtree::test::ProgramOptions program("Ours and other libraries before exact arithmetic.");
+  program.add("--pairs", pairs, "triangle pairs of each family [20000]");
+  program.add("--rays", rays, "rays at each closed mesh [20000]");
+  program.add("--shapes", shapes, "shapes of each kind [1000]");
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   try {
     const std::uint64_t wrong = (pairs > 0 ? boxtree::test::classify_pairs(pairs) : 0) +
                                 (shapes > 0 ? boxtree::test::classify_shapes(shapes) : 0) +

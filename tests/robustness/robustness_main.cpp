@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/robustness/run.h"
+#include "tests/support/program_options.h"
 
 namespace boxtree::robustness {
 namespace {
@@ -81,10 +82,10 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   boxtree::robustness::Arguments arguments;
-  CLI::App app("The robustness suite: id, what, figure, limit, pass.");
-  app.add_option("CASE", arguments.only, "ids of the cases to run [all]");
-  app.add_flag("--full", arguments.full, "counts of a documented run: minutes, gigabytes");
-  app.add_option("--json", arguments.json, "also write the table there");
-  CLI11_PARSE(app, argc, argv);
+  boxtree::test::ProgramOptions program("The robustness suite: id, what, figure, limit, pass.");
+  program.add("CASE", arguments.only, "ids of the cases to run [all]");
+  program.add_flag("--full", arguments.full, "counts of a documented run: minutes, gigabytes");
+  program.add("--json", arguments.json, "also write the table there");
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   return boxtree::robustness::run(arguments);
 }

@@ -3,14 +3,15 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/stiff/cases.h"
+#include "tests/support/program_options.h"
 
 namespace boxtree::stiff {
 namespace {
@@ -102,15 +103,14 @@ int main(int argc, char** argv) {
   boxtree::stiff::Arguments arguments;
   std::vector<std::string> names;
   for (const auto& info : boxtree::stiff::kCases) names.emplace_back(info.id);
-  CLI::App app(
+  boxtree::test::ProgramOptions program(
       "Stiff contact: a penalty-contact simulation over every codec. Exit status 1 when a "
       "figure misses its limit.");
-  app.add_option("--case", arguments.cases, "S1 to S6; all by default")
-      ->check(CLI::IsMember(names));
-  app.add_flag("--quick", arguments.quick, "Fewer steps and settings");
-  app.add_option("--json", arguments.json, "Write all figures");
-  app.add_option("--plots", arguments.plots, "Folder for plots of energy, chatter and depth");
-  CLI11_PARSE(app, argc, argv);
+  program.add("--case", arguments.cases, "S1 to S6; all by default").one_of(names);
+  program.add_flag("--quick", arguments.quick, "Fewer steps and settings");
+  program.add("--json", arguments.json, "Write all figures");
+  program.add("--plots", arguments.plots, "Folder for plots of energy, chatter and depth");
+  if (const std::optional<int> status = program.parse(argc, argv)) return *status;
   try {
     return boxtree::stiff::run(arguments) ? 0 : 1;
   } catch (const std::exception& error) {
