@@ -18,6 +18,8 @@ function(boxtree_set_target target)
                                            -Wsign-conversion -Wno-missing-field-initializers
                                            # Programs linked with --gc-sections keep what they call.
                                            -ffunction-sections -fdata-sections)
+  # g++ looks for garbage when it holds 512 MB, not 128: a tenth less time, a quarter more memory.
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=524288>)
   # Doubles are computed as doubles, not in the x87's 80 bits.
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(i.86|x86)$")
     target_compile_options(${target} PUBLIC
