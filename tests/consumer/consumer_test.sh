@@ -106,7 +106,7 @@ refused_visitor 'must return bool: a visitor true to go on' \
 # Nor is older C++ a page of templates. The headers left out declare plain data, which any C++ takes.
 for header in $(sed '/^shape.h$/d;/^triangle.h$/d;/^kinds.h$/d;/^memory.h$/d;/^configuration.h$/d' <<<"$installed"); do
   echo "#include <boxtree/$header>" >"$work/alone.cpp"
-  if "$compiler" -std=c++17 -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/alone.cpp" 2>"$work/log"; then
+  if "$compiler" -std=c++17 -Wfatal-errors -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/alone.cpp" 2>"$work/log"; then
     fail "$header compiles as C++17"
   fi
   grep -m 1 'error: ' "$work/log" | grep -q 'boxtree needs C++20' || { cat "$work/log"; fail "$header: another error comes first"; }

@@ -25,8 +25,8 @@ BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.s
 
 # What this test itself writes.
 WRITTEN_HERE = {"make/", "ninja/", "program", "program.cpp", "program.out", "query.out"}
-# What uses an installation for C, which tests/consumer/c_test.sh runs with what it prints.
-USES_C = re.compile(r"^cc ")
+# What uses an installation for C, or the two files in its place, which tests/consumer/c_test.sh runs with what it prints.
+USES_C = re.compile(r"^(cc |python3 runtime/c/amalgamate\.py )")
 
 # What programs of the pages use of the application around them.
 AROUND = """

@@ -16,8 +16,8 @@ for file in "$golden"/v*.hex; do read_bxt "$file" >"$work/said" || fail "$file";
 # A sheet of quads and triangles that takes more than one cluster.
 sheet=$work/sheet.obj
 awk 'BEGIN {
-  for (y = 0; y <= 20; ++y) for (x = 0; x <= 60; ++x) print "v", x / 7, y / 9, sin(x / 5) * cos(y / 3)
-  for (y = 0; y < 20; ++y) for (x = 1; x <= 60; ++x) {
+  for (y = 0; y <= 8; ++y) for (x = 0; x <= 60; ++x) print "v", x / 7, y / 9, sin(x / 5) * cos(y / 3)
+  for (y = 0; y < 8; ++y) for (x = 1; x <= 60; ++x) {
     a = 61 * y + x
     if (x == 5 && y % 2) print "f", a, a + 1, a + 62, a + 61
     else { print "f", a, a + 1, a + 62; print "f", a, a + 62, a + 61 }

@@ -333,7 +333,7 @@ platform_amalgamation() {
   # Found by an audit: -ffast-math was refused, its parts were not.
   local part
   for part in -funsafe-math-optimizations -ffinite-math-only -freciprocal-math; do
-    g++ -std=c++20 "$part" -fsyntax-only "$work/amalgamation/boxtree_amalgamated.cpp" 2>"$work/amalgamation.log" &&
+    g++ -std=c++20 "$part" -Wfatal-errors -fsyntax-only "$work/amalgamation/boxtree_amalgamated.cpp" 2>"$work/amalgamation.log" &&
       { fail amalgamation "compiles with $part"; return 0; }
     grep -q 'decides by exact arithmetic' "$work/amalgamation.log" || { fail amalgamation "another error of $part"; return 0; }
   done

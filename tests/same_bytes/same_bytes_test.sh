@@ -46,17 +46,18 @@ same() {
 same "all threads" "$program"
 same "one thread" "$program" --jobs 1
 [ "$threads_only" = no ] || exit 0
+# Several circumstances at a time, since each run takes seconds.
 mkdir -p "$work/other folder"
 ln -s "$(dirname "$program")" "$work/link"
-same "heap filled with 5a" env MALLOC_PERTURB_=90 "$program"
-same "heap filled with a5" env MALLOC_PERTURB_=165 "$program"
-same "no fused or wide instructions in libm" \
-  env GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX "$program"
-same "through a link, in another folder" \
-  env -C "$work/other folder" LC_ALL=C "$work/link/$(basename "$program")"
+same "heap filled with 5a, no fused or wide instructions in libm" \
+  env MALLOC_PERTURB_=90 GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX "$program"
+linked=(env -C "$work/other folder" MALLOC_PERTURB_=165)
 if [ -n "$comma" ]; then
-  same "decimal comma" env LC_ALL="$comma" "$program" --comma-locale
+  same "heap filled with a5, through a link, in another folder, decimal comma" \
+    "${linked[@]}" LC_ALL="$comma" "$work/link/$(basename "$program")" --comma-locale
 else
+  same "heap filled with a5, through a link, in another folder" \
+    "${linked[@]}" LC_ALL=C "$work/link/$(basename "$program")"
   echo "decimal comma: not tried, there is neither de_DE.UTF-8 nor what makes it"
 fi
 
