@@ -32,6 +32,7 @@
 #include "cooker/report/tradeoff_page.h"
 #include "cooker/system/input_failure.h"
 #include "cooker/system/path.h"
+#include "cooker/text/counted.h"
 #include "cooker/write/atomic_file.h"
 #include "cooker/write/outputs.h"
 
@@ -51,6 +52,7 @@ struct ReportArguments {
   bool quick = false;
   bool no_times = false;
   bool f64 = false;
+  bool skip_bad = false;
   std::optional<double> tolerance;
   bool quiet = false;
   int jobs = kAllThreads;
@@ -240,13 +242,16 @@ std::string command_of(const ReportArguments& arguments) {
   if (arguments.quick) command += " --quick";
   if (arguments.no_times && !arguments.paper) command += " --no-times";
   if (arguments.f64) command += " --f64";
+  if (arguments.skip_bad) command += " --skip-bad";
   if (arguments.tolerance) command += fmt::format(" --tolerance {}", *arguments.tolerance);
   for (const auto& mesh : arguments.meshes) command += " " + shell_word(mesh.filename().string());
   return command;
 }
 
-Result<SourceMesh> read_mesh(const std::filesystem::path& path, const ReportArguments& arguments) {
+Result<Imported> read_mesh(const std::filesystem::path& path, const ReportArguments& arguments) {
   ImportOptions options = careful_import();
+  options.skip_bad = arguments.skip_bad;
+  options.command = "report";
   if (arguments.f64) options.precision = Precision::kF64;
   Result<Imported> imported = import_mesh(path, options);
   if (!imported) return imported.error();
@@ -255,8 +260,11 @@ Result<SourceMesh> read_mesh(const std::filesystem::path& path, const ReportArgu
     if (!status) return status.error();
   }
   for (const std::string& warning : warnings_of(imported->report)) warn(warning);
+  if (const std::size_t skipped = imported->report.skipped.size(); skipped > 0) {
+    warn(fmt::format("{}: {} left out by --skip-bad", path.string(), counted(skipped, "bad face")));
+  }
   imported->mesh.name = path.stem().string();
-  return std::move(imported->mesh);
+  return imported;
 }
 
 Result<PaperReport> measure_paper(const ReportArguments& arguments) {
@@ -271,10 +279,10 @@ Result<PaperReport> measure_paper(const ReportArguments& arguments) {
   for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
     const std::string name = arguments.meshes[i].filename().string();
     step("import " + name, i);
-    const Result<SourceMesh> mesh = read_mesh(arguments.meshes[i], arguments);
-    if (!mesh) return mesh.error();
+    const Result<Imported> imported = read_mesh(arguments.meshes[i], arguments);
+    if (!imported) return imported.error();
     step("encode and query " + name, i);
-    Result<PaperFigures> figures = paper_figures(*mesh);
+    Result<PaperFigures> figures = paper_figures(imported->mesh);
     if (!figures) return figures.error();
     report.meshes.push_back(std::move(*figures));
   }
@@ -322,13 +330,14 @@ Result<TradeoffReport> measure_all(const ReportArguments& arguments) {
   for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
     const auto before = static_cast<double>(i);
     steps("import " + arguments.meshes[i].filename().string(), part(before));
-    const Result<SourceMesh> mesh = read_mesh(arguments.meshes[i], arguments);
-    if (!mesh) return mesh.error();
+    const Result<Imported> imported = read_mesh(arguments.meshes[i], arguments);
+    if (!imported) return imported.error();
     Result<MeshTradeoff> figures = measure_tradeoff(
-        *mesh, {arguments.quick, !arguments.no_times, arguments.tolerance},
+        imported->mesh, {arguments.quick, !arguments.no_times, arguments.tolerance},
         [&](const std::string& step, double share) { steps(step, part(before + share)); });
     if (!figures) return figures.error();
     figures->file_name = arguments.meshes[i].filename().string();
+    figures->skipped = imported->report.skipped.size();
     report.meshes.push_back(std::move(*figures));
   }
   if (report.no_peers.empty()) {
@@ -467,6 +476,8 @@ void add_report_command(Command& program, int& status) {
       ->type_name("LENGTH")
       ->above_zero("a length")
       ->excludes(paper);
+  Option* skip_bad = command.add_flag("--skip-bad", arguments->skip_bad,
+                                      "Leave out faces with NaN, infinite or missing vertices");
   command.add_flag("--quick", arguments->quick, "Few encodings, queries and runs: for a look");
   command.add_flag("--no-times", arguments->no_times,
                    "Count only: the same figures on every machine");
@@ -480,7 +491,8 @@ void add_report_command(Command& program, int& status) {
                   "The program boxtree_peers, to measure other libraries, too "
                   "(BUILD/tests/bench/boxtree_peers) [none]")
       ->type_name("PROGRAM")
-      ->group(kRareOptions);
+      ->group(kRareOptions)
+      ->excludes(skip_bad);
   command.example("A page, for a look", "boxtree report bunny.obj -o bunny.html --quick");
   command.example("What a vertex may be off by 0.001 saves",
                   "boxtree report bunny.obj -o bunny.html --quick --tolerance 0.001");

@@ -85,6 +85,7 @@ struct MeshTradeoff {
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
   double diagonal = 0;                  // of the bounds, object space
+  std::uint64_t skipped = 0;            // bad faces that --skip-bad left out
   bool is_f64 = false;                  // its positions
   double moved_by_f32 = 0;              // SourceMesh::moved_by_f32
   F32Loss f32_loss = F32Loss::kDigits;  // of moved_by_f32

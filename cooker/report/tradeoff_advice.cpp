@@ -283,6 +283,10 @@ std::string cook_command(const MeshTradeoff& mesh, const TradePoint& point) {
   return fmt::format("boxtree cook {} -o {} {}", source, output, cook_options(mesh, point));
 }
 
+std::string import_options(const MeshTradeoff& mesh) {
+  return fmt::format("{}{}", mesh.is_f64 ? " --f64" : "", mesh.skipped > 0 ? " --skip-bad" : "");
+}
+
 std::string cook_options(const MeshTradeoff& mesh, const TradePoint& point) {
   const auto positions = [&]() -> std::string {
     switch (point.geometry) {
@@ -300,7 +304,7 @@ std::string cook_options(const MeshTradeoff& mesh, const TradePoint& point) {
     return "--external";
   };
   return fmt::format("--codec {} {}{} --flatten --strip", codec_name(point.codec), positions(),
-                     mesh.is_f64 ? " --f64" : "");
+                     import_options(mesh));
 }
 
 std::string time_in_words(double nanoseconds) {

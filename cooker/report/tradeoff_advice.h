@@ -66,6 +66,9 @@ struct Advice {
 /// the names of one without a source.
 [[nodiscard]] std::string cook_command(const MeshTradeoff& mesh, const TradePoint& point);
 
+/// " --f64 --skip-bad": the options of a cook that reads the mesh as the report did.
+[[nodiscard]] std::string import_options(const MeshTradeoff& mesh);
+
 /// The options of `boxtree cook` that produce a file of a point's bytes: the first input is one
 /// tree, and no record of the cook follows.
 [[nodiscard]] std::string cook_options(const MeshTradeoff& mesh, const TradePoint& point);

@@ -151,6 +151,7 @@ Json to_json(const MeshTradeoff& mesh) {
       {"mesh", mesh.name},
       {"triangles", mesh.triangles},
       {"vertices", mesh.vertices},
+      {"skipped", mesh.skipped},
       {"diagonal", mesh.diagonal},
       {"positions", precision_name(mesh.is_f64 ? Precision::kF64 : Precision::kF32)},
       {"moved_by_f32", mesh.moved_by_f32},

@@ -199,9 +199,12 @@ PageSection kind_section(const TradeoffReport& report, const MeshTradeoff& mesh,
 PageSection advice_section(const MeshTradeoff& mesh) {
   PageSection section;
   section.title = mesh.name + ": what to use";
-  section.text = fmt::format("{}, {} vertices, a diagonal of {:.4g} units.{}",
-                             counted(mesh.triangles, "triangle"), mesh.vertices, mesh.diagonal,
-                             mesh.is_f64 ? " Positions are f64." : "");
+  section.text = fmt::format(
+      "{}, {} vertices, a diagonal of {:.4g} units.{}{}", counted(mesh.triangles, "triangle"),
+      mesh.vertices, mesh.diagonal, mesh.is_f64 ? " Positions are f64." : "",
+      mesh.skipped > 0
+          ? fmt::format(" Without {} of the source.", counted(mesh.skipped, "bad face"))
+          : "");
   section.conclusions = advice_in_words(mesh);
   if (mesh.moved_by_f32 > 0) {
     section.conclusions.insert(
@@ -263,9 +266,8 @@ PageSection advice_section(const MeshTradeoff& mesh) {
       "may move, so that they may differ. Only encodings with the same surface, bit for bit, "
       "compete for the fastest. Slowdown: {}, of the {} mean times of rays, boxes ({}), closest "
       "points and contacts ({}).",
-      mesh.is_f64 ? " --f64" : "",
-      mesh.tolerance ? fmt::format(" --tolerance {}", *mesh.tolerance) : "", cooks,
-      is_by_work ? "modelled times" : "times on this page", kSlowdownMeaning,
+      import_options(mesh), mesh.tolerance ? fmt::format(" --tolerance {}", *mesh.tolerance) : "",
+      cooks, is_by_work ? "modelled times" : "times on this page", kSlowdownMeaning,
       is_by_work ? "modelled" : "measured", kBoxMeaning,
       is_by_work ? kShallowMeaning : contacts_meaning(mesh));
   if (is_by_work && mesh.timed) {

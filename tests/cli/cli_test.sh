@@ -1317,6 +1317,20 @@ expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.
 same "$(cat err)" ''
 grep -q 'Positions are f64' far.html
 
+# Bad faces are left out of a report on request, of all that it is of, and its commands leave them out, too.
+{ cat cube.obj; printf 'v nan 0 0\nf 1 2 -1\n'; } >cube_and_bad.obj
+expect 3 "$boxtree" report cube_and_bad.obj --quick --no-times
+grep -q '(report --skip-bad drops such faces)$' err
+expect 0 "$boxtree" report cube_and_bad.obj -o bad.html --quick --no-times --skip-bad --json
+same "$(cat err)" 'boxtree: warning: cube_and_bad.obj: 1 bad face left out by --skip-bad'
+same "$(jq -c '.meshes[0] | [.triangles, .skipped]' out)" '[12,1]'
+grep -q 'Without 1 bad face of the source' bad.html
+grep -o 'boxtree cook cube_and_bad.obj [^<]*' bad.html >commands
+[ -s commands ]
+same "$(grep -vc -- ' --skip-bad' commands)" 0
+read -ra words < <(head -1 commands)
+expect 0 "$boxtree" "${words[@]:1}" -q
+
 # The same of a mesh whose node places it there, as an export does.
 expect 0 "$boxtree" cook far.obj -o far.bxt -q --f64
 expect 0 "$boxtree" export far.bxt --triangles -o placed.glb

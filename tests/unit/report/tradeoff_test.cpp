@@ -289,6 +289,15 @@ TEST(Tradeoff, CommandsOfAMeshInF64ReadItSo) {
   EXPECT_EQ(made.points[cooks_choice(made, Goal::kMemory).value()].grid_bits, 0);
 }
 
+TEST(Tradeoff, CommandsOfAMeshWithoutItsBadFacesLeaveThemOut) {
+  MeshTradeoff made = require(measure_tradeoff(mesh(), {true, false}));
+  EXPECT_EQ(cook_options(made, made.points.front()).find("--skip-bad"), std::string::npos);
+  made.skipped = 3;
+  for (const TradePoint& point : made.points) {
+    EXPECT_TRUE(cook_options(made, point).ends_with(" --skip-bad"));
+  }
+}
+
 TEST(Tradeoff, RefusesAMeshWithoutFaces) {
   EXPECT_EQ(measure_tradeoff({}, {}).code(), Errc::kNoFaces);
 }
