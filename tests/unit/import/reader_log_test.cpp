@@ -39,7 +39,7 @@ TEST(ReaderLog, AnErrorRightBeforeIsTheCause) {
     const ReaderLog log;
     Assimp::DefaultLogger::get()->error("polygon vertex index out of range");
     warn(kLink);
-    EXPECT_EQ(log.loss(), std::string("polygon vertex index out of range: ") + kLink);
+    EXPECT_EQ(log.loss(), std::string("polygon vertex index out of range: ").append(kLink));
   }
   const ReaderLog log;
   Assimp::DefaultLogger::get()->error("ignoring additional tangent layer");

@@ -337,7 +337,8 @@ TEST(CollideWithASphere, HasTheSameBitsByVectors) {
         const double off = i % 3 == 0 ? 0 : size * std::ldexp(1.0, -3 - i % 50);
         const Eigen::Vector3d at = on + off * Eigen::Vector3d(unit(), unit(), unit());
         double radius = size * std::ldexp(1.0, -1 - i % 9);
-        if (i % 5 == 0) radius = (at - corner[i % 3]).norm();  // that it may just touch
+        // That it may just touch.
+        if (i % 5 == 0) radius = (at - corner[static_cast<std::size_t>(i % 3)]).norm();
         const Sphere sphere{at, radius};
         auto expected = contacts_of(plain.tree, sphere);
         auto found = contacts_of(wide.tree, sphere);
@@ -347,7 +348,7 @@ TEST(CollideWithASphere, HasTheSameBitsByVectors) {
         ASSERT_EQ(found, expected)
             << test::encoding_name(testing::TestParamInfo<test::Encoding>(encoding, 0)) << ' ' << i;
         count += found.size();
-        for (const auto& contact : found) of_faces += contact[2] == 0 ? 1 : 0;
+        for (const auto& contact : found) of_faces += std::size_t{contact[2] == 0};
         const std::size_t most = 1 + random() % 9;
         if (most > in_order.size()) continue;
         const std::vector first(in_order.begin(),

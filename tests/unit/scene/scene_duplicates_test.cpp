@@ -41,12 +41,12 @@ class SceneDuplicates : public testing::TestWithParam<CodecId> {
 };
 
 TEST_P(SceneDuplicates, SpheresEqualBruteForce) {
-  using Faces = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
+  using Copies = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
   std::size_t touched = 0;
   for (int i = 0; i < 60; ++i) {
     const Eigen::Vector3d center = point();
     const double radius = 2 + unit();
-    Faces expected, found;
+    Copies expected, found;
     for (const WorldTriangle& t : triangles_) {
       const Eigen::Vector3d near = closest_point_on_triangle(center, t.triangle);
       if (squared_length(near - center) <= radius * radius) expected.emplace(t.instance, t.face);
@@ -59,7 +59,7 @@ TEST_P(SceneDuplicates, SpheresEqualBruteForce) {
     ASSERT_EQ(found, expected);
     touched += found.size();
     const Eigen::Vector3d half = Eigen::Vector3d::Constant(radius);
-    Faces in_box = std::exchange(found, {});
+    Copies in_box = std::exchange(found, {});
     ASSERT_TRUE(overlap_box(scene_, {center - half, center + half}, visit).ok());
     for (const auto& face : in_box) ASSERT_EQ(found.count(face), 1u);  // around the sphere
   }

@@ -135,8 +135,8 @@ TEST_P(SceneQueries, BatchesVisitForEachShapeWhatItVisitsAlone) {
   boxes[7].min().x() = std::numeric_limits<double>::quiet_NaN();
   spheres[8].radius = -1;
   // Of even shapes two faces at most.
-  using Faces = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-  const auto keep = [](Faces& faces, std::size_t i, const SceneFace& face) {
+  using FewFaces = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  const auto keep = [](FewFaces& faces, std::size_t i, const SceneFace& face) {
     faces.emplace_back(face.instance, face.face.index);
     return i % 2 == 1 || faces.size() < 2;
   };
@@ -145,14 +145,14 @@ TEST_P(SceneQueries, BatchesVisitForEachShapeWhatItVisitsAlone) {
     for (const QueryLimits& limits : {QueryLimits(), QueryLimits{20}}) {
       const auto expect_as_alone = [&](const auto& shapes, const auto& visit_all,
                                        const auto& visit) {
-        std::vector<Faces> faces(shapes.size());
+        std::vector<FewFaces> faces(shapes.size());
         std::vector<VisitResult> results(shapes.size());
         ASSERT_TRUE(visit_all(shapes, results, [&](std::size_t i, const SceneFace& face) {
                       return keep(faces[i], i, face);
                     }).ok());
         for (std::size_t i = 0; i < shapes.size(); ++i) {
           SCOPED_TRACE(i);
-          Faces alone;
+          FewFaces alone;
           const Result<Visit> end =
               visit(shapes[i], [&](const SceneFace& face) { return keep(alone, i, face); });
           EXPECT_EQ(faces[i], alone);
