@@ -1325,7 +1325,7 @@ expect 0 "$boxtree" report cube_and_bad.obj -o bad.html --quick --no-times --ski
 same "$(cat err)" 'boxtree: warning: cube_and_bad.obj: 1 bad face left out by --skip-bad'
 same "$(jq -c '.meshes[0] | [.triangles, .skipped]' out)" '[12,1]'
 grep -q 'Without 1 bad face of the source' bad.html
-grep -o 'boxtree cook cube_and_bad.obj [^<]*' bad.html >commands
+grep -o '<code>.*</code>' bad.html | sed 's/<[^>]*>/ /g' | tr -s ' ' | grep -o 'boxtree cook cube_and_bad.obj .*' >commands
 [ -s commands ]
 same "$(grep -vc -- ' --skip-bad' commands)" 0
 read -ra words < <(head -1 commands)

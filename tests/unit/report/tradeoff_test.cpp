@@ -294,7 +294,7 @@ TEST(Tradeoff, CommandsOfAMeshWithoutItsBadFacesLeaveThemOut) {
   EXPECT_EQ(cook_options(made, made.points.front()).find("--skip-bad"), std::string::npos);
   made.skipped = 3;
   for (const TradePoint& point : made.points) {
-    EXPECT_TRUE(cook_options(made, point).ends_with(" --skip-bad"));
+    EXPECT_NE(cook_options(made, point).find(" --skip-bad "), std::string::npos);
   }
 }
 
