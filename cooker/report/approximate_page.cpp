@@ -172,13 +172,13 @@ PageConclusion conclusion_of(const MeshTradeoff& mesh, const TradePoint& point, 
                       : fmt::format("{:.1f} nodes", cost_of(mesh, of));
   };
   return {fmt::format("{} allowed:", share(step.relative_error)),
-          fmt::format("{} takes {} instead of {} ({}), {:.1f} times less. The answers were at most "
-                      "{} above the true distance, {} in the median, and {} of {} bounds were "
-                      "false.",
-                      kApproximateWords[kind].one, cost(step), cost(exact), point.name(),
-                      cost_of(mesh, exact) / std::max(cost_of(mesh, step), 1e-300),
-                      share(step.error_max), share(step.error_median), step.false_bounds,
-                      step.queries)};
+          fmt::format(
+              "{} takes {} instead of {} ({}), {:.2f} times as much. The answers were at most "
+              "{} above the true distance, {} in the median, and {} of {} bounds were "
+              "false.",
+              kApproximateWords[kind].one, cost(step), cost(exact), point.name(),
+              cost_of(mesh, step) / std::max(cost_of(mesh, exact), 1e-300), share(step.error_max),
+              share(step.error_median), step.false_bounds, step.queries)};
 }
 
 PageSection section_of(const MeshTradeoff& mesh, const std::vector<const TradePoint*>& points,

@@ -101,8 +101,8 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
   }
   return {
       role + ": " + point.name() + ".",
-      fmt::format("{:.2f} bytes per triangle, a file of {} bytes: with its tree {:.0f} % of "
-                  "what the source's positions and corners alone take; {:.2f} with geometry and "
+      fmt::format("{:.2f} bytes per triangle, a file of {} bytes, tree included: {:.0f} % of "
+                  "what positions and corners of the source alone take; {:.2f} with geometry and "
                   "without face ids, as cook counts. {} {} "
                   "Slowdown: {:.2f}.",
                   mesh.per_triangle(bytes), bytes,

@@ -24,7 +24,7 @@ from blocks import blocks_of
 BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.sh|cmake -S \. -B build-(deb|windows|windows-cli|arm64) )")
 
 # What this test itself writes.
-WRITTEN_HERE = {"make/", "ninja/", "program", "program.cpp", "program.out", "query.out"}
+WRITTEN_HERE = {"make/", "ninja/", "precompiled/", "program", "program.cpp", "program.out", "query.out"}
 # What uses an installation for C, or the two files in its place, which tests/consumer/c_test.sh runs with what it prints.
 USES_C = re.compile(r"^(cc |python3 runtime/c/amalgamate\.py )")
 
@@ -78,8 +78,10 @@ def as_pattern(line):
 
 class Pages:
     def __init__(self, source, boxtree, compiler, includes, libraries, work):
-        self.source, self.boxtree, self.compiler, self.work = source, boxtree, compiler, work
-        self.includes = [flag for folder in includes.split(";") if folder for flag in ("-isystem", folder)]
+        self.source, self.boxtree, self.work = source, boxtree, work
+        folders = [folder for folder in includes.split(";") if folder]
+        self.compile = [compiler, "-std=c++20", "-ffp-contract=off",
+                        *(flag for folder in folders for flag in ("-isystem", folder))]
         self.libraries = [library for library in libraries.split(";") if library]
         # The folder of the sources, in which nothing that is written stays.
         for entry in source.iterdir():
@@ -88,6 +90,12 @@ class Pages:
         self.environment = dict(os.environ, PATH=f"{pathlib.Path(boxtree).parent}:{os.environ['PATH']}")
         self.said = ""
         self.ran = 0
+        # g++ takes the header that all programs include from here, compiled once.
+        header = next(path for path in (pathlib.Path(folder, "boxtree/boxtree.h") for folder in folders) if path.exists())
+        (work / "precompiled/boxtree").mkdir(parents=True)
+        subprocess.run([*self.compile, "-w", "-x", "c++-header", header, "-o",
+                        work / "precompiled/boxtree/boxtree.h.gch"], check=True)
+        self.compile[1:1] = ["-isystem", str(work / "precompiled")]
 
     def run(self, page, text, line):
         done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=self.work, text=True,
@@ -115,7 +123,7 @@ class Pages:
                 "int run() {\n" + body + "  return 0;\n}\n" + ("int main() { return run(); }\n" if is_whole else ""))
         path = self.work / "program.cpp"
         path.write_text(code, encoding="utf-8")
-        command = [self.compiler, "-std=c++20", "-ffp-contract=off", "-Werror", *self.includes, str(path), "-o", "program"]
+        command = [*self.compile, "-Werror", str(path), "-o", "program"]
         done = subprocess.run(command + (self.libraries if is_whole else ["-fsyntax-only"]), cwd=self.work,
                               text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         if done.returncode != 0:

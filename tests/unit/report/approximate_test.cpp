@@ -2,6 +2,7 @@
 // Curves of approximate queries: truths against brute force in extended precision, steps against
 // what theory promises, the page and its data against the steps.
 #include <algorithm>
+#include <regex>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -208,6 +209,10 @@ TEST(ApproximatePage, ShowsEveryStepAndSaysWhatIsPromised) {
     }
     EXPECT_EQ(section.conclusions.size(), 2u);
     EXPECT_EQ(section.conclusions[0].lead, "1 % allowed:");
+    // Of what is exact: fewer nodes.
+    EXPECT_TRUE(std::regex_search(section.conclusions[0].text,
+                                  std::regex(R"(\), 0\.\d\d times as much\.)")))
+        << section.conclusions[0].text;
     EXPECT_EQ(section.plots.size(), 3u);
   }
   EXPECT_NE(sections[0].text.find("on average only"), std::string::npos);

@@ -401,8 +401,8 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
       "Balanced, for most uses (surface within a millionth of the diagonal): wide8, grid 24.");
   EXPECT_EQ(
       words[0].text,
-      "8.00 bytes per triangle, a file of 800 bytes: with its tree 80 % of what the source's "
-      "positions and corners alone take; "
+      "8.00 bytes per triangle, a file of 800 bytes, tree included: 80 % of what positions "
+      "and corners of the source alone take; "
       "8.00 with geometry and without face ids, as cook counts. No point of the "
       "surface moves by more than 4e-08 of the diagonal (8e-08 units of the mesh). In the mean a "
       "ray takes 120 ns, a box 120 ns, a closest point 120 ns, all "

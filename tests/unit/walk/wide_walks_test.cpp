@@ -337,10 +337,10 @@ void expect_equal(const SourceMesh& mesh, const cooker::CookOptions& options, st
   const std::vector<const Tree*> trees = {&wide8.tree, &wide4.tree};
   QuerySet queries(mesh, plain.tree, seed);
   const bool is_large = queries.is_large();
-  expect_same(queries.rays(is_large ? 1500 : 6000), plain.tree, trees, query_ray);
-  expect_same(queries.casts(is_large ? 25 : 250), plain.tree, trees, query_cast);
-  expect_same(queries.boxes(is_large ? 50 : 1500), plain.tree, trees, query_box);
-  const auto spheres = queries.spheres(is_large ? 50 : 1500);
+  expect_same(queries.rays(is_large ? 1500 : 3000), plain.tree, trees, query_ray);
+  expect_same(queries.casts(is_large ? 25 : 150), plain.tree, trees, query_cast);
+  expect_same(queries.boxes(is_large ? 50 : 800), plain.tree, trees, query_box);
+  const auto spheres = queries.spheres(is_large ? 50 : 800);
   expect_same(spheres, plain.tree, trees, query_sphere);
   std::vector<Eigen::Vector3d> points;
   for (const auto& sphere : spheres) points.push_back(sphere.first);
