@@ -17,7 +17,7 @@ import tempfile
 
 CONCLUSION = re.compile(
     r"([^.>]*): (wide8|wide4), (arrays|exact|grid)(?: (\d+))?\..{0,40}?"
-    r"([\d.]+) bytes per triangle, a file of (\d+) bytes:.*?"
+    r"([\d.]+) bytes per triangle, a file of (\d+) bytes, tree included:.*?"
     r"(No position changes by a single bit|No point of the surface moves by more than).*?"
     r"In the folder of the mesh: <code>boxtree (cook [^<]*?)\s*<", re.DOTALL)
 
