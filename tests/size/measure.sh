@@ -1,5 +1,7 @@
-# shellcheck shell=bash
-# What the tests of sizes share. Sourced; $work is a folder of the test, $less the bytes of an empty program.
+# SPDX-License-Identifier: MIT
+# What the tests of sizes share: read by the scripts of this folder, which have a folder $work, a function fail, $less,
+# the bytes of an empty program, and $boxtree.
+# shellcheck shell=bash disable=SC2154
 
 # bytes PROGRAM: code and data of it once stripped.
 bytes() { strip -o "$work/stripped" "$1" && size "$work/stripped" | awk 'NR == 2 {print $4}'; }
