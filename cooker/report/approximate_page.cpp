@@ -141,8 +141,8 @@ PageTable table_of(const MeshTradeoff& mesh, const std::vector<const TradePoint*
     for (const ApproximateStep& step : by_budget ? curves.by_budget : curves.by_error) {
       Row row = {point->name(), allowed(step)};
       if (mesh.timed) {
-        row.push_back(time_in_words(step.times.median_ns));
-        row.push_back(time_in_words(step.times.p99_ns));
+        row.push_back(time_in_words(mesh, step.times.median_ns));
+        row.push_back(time_in_words(mesh, step.times.p99_ns));
       }
       const auto of_all = [&](std::size_t count) {
         return fmt::format("{} of {}", count, step.queries);
@@ -160,7 +160,7 @@ PageTable table_of(const MeshTradeoff& mesh, const std::vector<const TradePoint*
 }
 
 double cost_of(const MeshTradeoff& mesh, const ApproximateStep& step) {
-  return mesh.timed ? step.times.median_ns : step.nodes_mean;
+  return goes_by_work(mesh) ? step.nodes_mean : step.times.median_ns;
 }
 
 // The effect of one allowed error, in the first encoding.
@@ -168,8 +168,8 @@ PageConclusion conclusion_of(const MeshTradeoff& mesh, const TradePoint& point, 
                              const ApproximateStep& step) {
   const ApproximateStep& exact = point.approximate[kind].by_error.front();
   const auto cost = [&](const ApproximateStep& of) {
-    return mesh.timed ? time_in_words(cost_of(mesh, of))
-                      : fmt::format("{:.1f} nodes", cost_of(mesh, of));
+    return goes_by_work(mesh) ? fmt::format("{:.1f} nodes", cost_of(mesh, of))
+                              : time_in_words(cost_of(mesh, of));
   };
   return {fmt::format("{} allowed:", share(step.relative_error)),
           fmt::format(

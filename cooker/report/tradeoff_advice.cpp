@@ -87,15 +87,16 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
                                   : fmt::format("No point of the surface moves by more than {}.",
                                                 move_in_words(mesh, point.surface_max));
   const auto time = [&](std::size_t kind) {
-    return time_in_words(mean_time_of(mesh, point, kind));
+    return time_in_words(mesh, mean_time_of(mesh, point, kind));
   };
   std::string times = fmt::format("a ray takes {}, a box {}, a closest point {}, {} {}", time(0),
                                   time(1), time(2), contacts_name(mesh), time(3));
   if (mesh.timed) {
-    times =
-        fmt::format("In the mean {} (one in a hundred takes longer than {}, {}, {} and {}).", times,
-                    time_in_words(point.times[0].p99_ns), time_in_words(point.times[1].p99_ns),
-                    time_in_words(point.times[2].p99_ns), time_in_words(point.times[3].p99_ns));
+    const auto rare = [&](std::size_t kind) {
+      return time_in_words(mesh, point.times[kind].p99_ns);
+    };
+    times = fmt::format("In the mean {} (one in a hundred takes longer than {}, {}, {} and {}).",
+                        times, rare(0), rare(1), rare(2), rare(3));
   } else {
     times = "By its counted work, in the mean " + times + ".";
   }
@@ -311,6 +312,10 @@ std::string time_in_words(double nanoseconds) {
   if (nanoseconds < 1e3) return fmt::format("{:.0f} ns", nanoseconds);
   if (nanoseconds < 1e6) return fmt::format("{:.3g} µs", nanoseconds / 1e3);
   return fmt::format("{:.3g} ms", nanoseconds / 1e6);
+}
+
+std::string time_in_words(const MeshTradeoff& mesh, double nanoseconds) {
+  return (has_disturbed_times(mesh) ? "~" : "") + time_in_words(nanoseconds);
 }
 
 std::string disturbance_in_words(const MeshTradeoff& mesh) {

@@ -62,6 +62,9 @@ struct Advice {
 /// What to say of times that other programs disturbed; empty for others, and without times.
 [[nodiscard]] std::string disturbance_in_words(const MeshTradeoff& mesh);
 
+/// A time of the mesh: behind ~ where it was measured and disturbed.
+[[nodiscard]] std::string time_in_words(const MeshTradeoff& mesh, double nanoseconds);
+
 /// The command that cooks a point, run where the source of the mesh is; MESH and FILE.bxt stand for
 /// the names of one without a source.
 [[nodiscard]] std::string cook_command(const MeshTradeoff& mesh, const TradePoint& point);

@@ -217,7 +217,7 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   }
   if (std::string disturbance = disturbance_in_words(mesh); !disturbance.empty()) {
     section.conclusions.insert(section.conclusions.begin(),
-                               {"Times were disturbed:", std::move(disturbance) + "."});
+                               {"Times were disturbed:", std::move(disturbance) + ". Those have a ~."});
   }
   const auto advice = advise(mesh);
   if (!advice) return section;
@@ -240,7 +240,7 @@ PageSection advice_section(const MeshTradeoff& mesh) {
                                            static_cast<double>(mesh.source.total())),
                figure(point.surface_max)};
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-      row.push_back(time_in_words(mean_time_of(mesh, point, kind)));
+      row.push_back(time_in_words(mesh, mean_time_of(mesh, point, kind)));
     }
     row.push_back(fmt::format("{:.2f}", slower[place]));
     table.rows.push_back(std::move(row));
@@ -435,7 +435,7 @@ PageSection times_section(const TradeoffReport& report, const MeshTradeoff& mesh
     for (const KindWords& kind : kKinds) table.columns.emplace_back(kind.title);
     for (const TradePoint& point : mesh.points) {
       Row& row = table.rows.emplace_back(Row{point.name()});
-      for (const KindTimes& times : point.times) row.push_back(time_in_words(times.*part));
+      for (const KindTimes& times : point.times) row.push_back(time_in_words(mesh, times.*part));
     }
     section.tables.push_back(std::move(table));
   }

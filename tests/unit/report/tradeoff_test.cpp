@@ -374,6 +374,10 @@ TEST(Advice, SaysThatOtherProgramsDisturbedTheTimes) {
   EXPECT_NE(page(4, true).find("Times were disturbed: other programs had the processor for 60 % of "
                                "the time in which queries were timed"),
             std::string::npos);
+  // So each of them has a mark.
+  EXPECT_NE(page(4, true).find("Those have a ~."), std::string::npos);
+  EXPECT_NE(page(4, true).find("a ray takes ~120 ns"), std::string::npos);
+  EXPECT_EQ(page(10, true).find("~120 ns"), std::string::npos);
   // Whatever the page says of slowdowns is said of the same times.
   EXPECT_NE(page(10, true).find("go by the times on this page"), std::string::npos);
   EXPECT_NE(page(10, true).find("of the measured mean times"), std::string::npos);
