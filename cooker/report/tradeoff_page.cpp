@@ -216,8 +216,9 @@ PageSection advice_section(const MeshTradeoff& mesh) {
              move_in_words(mesh, mesh.moved_by_f32 / mesh.diagonal), remedy_of(mesh.f32_loss))});
   }
   if (std::string disturbance = disturbance_in_words(mesh); !disturbance.empty()) {
-    section.conclusions.insert(section.conclusions.begin(),
-                               {"Times were disturbed:", std::move(disturbance) + ". Those have a ~."});
+    section.conclusions.insert(
+        section.conclusions.begin(),
+        {"Times were disturbed:", std::move(disturbance) + ". Disturbed times are behind a ~."});
   }
   const auto advice = advise(mesh);
   if (!advice) return section;

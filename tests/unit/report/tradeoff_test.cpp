@@ -375,7 +375,7 @@ TEST(Advice, SaysThatOtherProgramsDisturbedTheTimes) {
                                "the time in which queries were timed"),
             std::string::npos);
   // So each of them has a mark.
-  EXPECT_NE(page(4, true).find("Those have a ~."), std::string::npos);
+  EXPECT_NE(page(4, true).find("Disturbed times are behind a ~."), std::string::npos);
   EXPECT_NE(page(4, true).find("a ray takes ~120 ns"), std::string::npos);
   EXPECT_EQ(page(10, true).find("~120 ns"), std::string::npos);
   // Whatever the page says of slowdowns is said of the same times.
