@@ -262,14 +262,14 @@ class ClusterReader {
         return;
       }
       for (std::size_t part = 0; part < 2; ++part) {
-        const auto lanes = hn::IndicesFromVec(d, face_[part]);
-        const auto middle = hn::TableLookupLanes(corner_2, lanes);
+        const auto lanes = face_[part].raw;  // not IndicesFromVec, as in permute()
+        const auto middle = hn::TableLookupLanes(corner_2, {lanes});
         const std::size_t at = part * kLeafFaces;
-        hn::Store(hn::TableLookupLanes(corner_0, lanes), d, out_0 + at);
-        hn::Store(hn::IfThenElse(is_half_[part], middle, hn::TableLookupLanes(corner_1, lanes)), d,
-                  out_1 + at);
-        hn::Store(hn::IfThenElse(is_half_[part], hn::TableLookupLanes(group[3], lanes), middle), d,
-                  out_2 + at);
+        hn::Store(hn::TableLookupLanes(corner_0, {lanes}), d, out_0 + at);
+        hn::Store(hn::IfThenElse(is_half_[part], middle, hn::TableLookupLanes(corner_1, {lanes})),
+                  d, out_1 + at);
+        hn::Store(hn::IfThenElse(is_half_[part], hn::TableLookupLanes(group[3], {lanes}), middle),
+                  d, out_2 + at);
       }
     }
 

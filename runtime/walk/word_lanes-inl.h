@@ -55,8 +55,10 @@ HWY_INLINE WordMask lanes_with(WordVector word, const std::uint32_t (&bits)[kWid
 HWY_INLINE std::uint32_t bits_of_words(WordMask mask) {
   return bits_of(hn::RebindMask(Floats(), mask));
 }
+// The low bits of an index are the lane. Not IndicesFromVec: it aborts in debug builds where an
+// index is larger, as in lanes of which nothing is used.
 HWY_INLINE WordVector permute(WordVector words, WordVector lanes) {
-  return hn::TableLookupLanes(words, hn::IndicesFromVec(Words(), lanes));
+  return hn::TableLookupLanes(words, {lanes.raw});
 }
 // Lane i: how many of the 8 `bits` up to i are set.
 HWY_INLINE WordVector ranks(std::uint32_t bits) {

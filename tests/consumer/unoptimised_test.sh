@@ -45,4 +45,9 @@ for codec in wide8 wide4; do
     quiet "$work/build/queries" "$work/hills.bxt"
   done
 done
+# Found by the platform O0: lanes of leaves that are not full looked up what assertions of Highway refuse.
+for golden in "$source"/tests/golden/v1.0-wide*.hex; do
+  python3 -c 'import sys; sys.stdout.buffer.write(bytes.fromhex(sys.stdin.read()))' <"$golden" >"$work/golden.bxt"
+  quiet "$work/build/queries" "$work/golden.bxt"
+done
 echo "unoptimised: as expected"
