@@ -215,9 +215,7 @@ class ClusterReader {
         : lanes(number),
           is_high(hn::RebindMask(Floats(), is_less(constant<kWideChildren - 1>(), number))) {}
     [[nodiscard]] HWY_INLINE FloatVector look_up(FloatVector low, FloatVector high) const {
-      // The low bits of an index are the lane.
-      return hn::IfThenElse(is_high, hn::TableLookupLanes(high, {lanes.raw}),
-                            hn::TableLookupLanes(low, {lanes.raw}));
+      return hn::IfThenElse(is_high, permute(high, lanes), permute(low, lanes));
     }
     WordVector lanes;
     hn::Mask<Floats> is_high;
@@ -262,14 +260,12 @@ class ClusterReader {
         return;
       }
       for (std::size_t part = 0; part < 2; ++part) {
-        const auto lanes = face_[part].raw;  // not IndicesFromVec, as in permute()
-        const auto middle = hn::TableLookupLanes(corner_2, {lanes});
+        const WordVector lanes = face_[part];
+        const auto middle = permute(corner_2, lanes);
         const std::size_t at = part * kLeafFaces;
-        hn::Store(hn::TableLookupLanes(corner_0, {lanes}), d, out_0 + at);
-        hn::Store(hn::IfThenElse(is_half_[part], middle, hn::TableLookupLanes(corner_1, {lanes})),
-                  d, out_1 + at);
-        hn::Store(hn::IfThenElse(is_half_[part], hn::TableLookupLanes(group[3], {lanes}), middle),
-                  d, out_2 + at);
+        hn::Store(permute(corner_0, lanes), d, out_0 + at);
+        hn::Store(hn::IfThenElse(is_half_[part], middle, permute(corner_1, lanes)), d, out_1 + at);
+        hn::Store(hn::IfThenElse(is_half_[part], permute(group[3], lanes), middle), d, out_2 + at);
       }
     }
 
@@ -278,7 +274,7 @@ class ClusterReader {
                                                    const FloatVector (&group)[4]) {
       const auto is_third =
           hn::RebindMask(Floats(), is_less(small(2 * kLeafFaces - 1), reference.lanes));
-      return hn::IfThenElse(is_third, hn::TableLookupLanes(group[2], {reference.lanes.raw}),
+      return hn::IfThenElse(is_third, permute(group[2], reference.lanes),
                             reference.look_up(group[0], group[1]));
     }
 

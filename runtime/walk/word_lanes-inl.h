@@ -57,8 +57,9 @@ HWY_INLINE std::uint32_t bits_of_words(WordMask mask) {
 }
 // The low bits of an index are the lane. Not IndicesFromVec: it aborts in debug builds where an
 // index is larger, as in lanes of which nothing is used.
-HWY_INLINE WordVector permute(WordVector words, WordVector lanes) {
-  return hn::TableLookupLanes(words, {lanes.raw});
+template <class Vector>
+HWY_INLINE Vector permute(Vector vector, WordVector lanes) {
+  return hn::TableLookupLanes(vector, {lanes.raw});
 }
 // Lane i: how many of the 8 `bits` up to i are set.
 HWY_INLINE WordVector ranks(std::uint32_t bits) {
