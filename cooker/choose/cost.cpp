@@ -29,27 +29,34 @@ StepCost fit_steps(std::span<const Measured> measured) {
   // With so few unknowns, the best fit without negative steps is the best of all fits in which some
   // steps are zero.
   constexpr Eigen::Index kSteps = 3;
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(measured.size()), kSteps);
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const Measured& m = measured[i];
-    rows.row(static_cast<Eigen::Index>(i)) =
-        Eigen::RowVector3d(1, m.work.nodes, m.work.leaves) / m.ns;
+  std::vector<Eigen::Vector3d> rows;
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Measured& m : measured) {
+    const Eigen::Vector3d row = Eigen::Vector3d(1, m.work.nodes, m.work.leaves) / m.ns;
+    rows.push_back(row);
+    products += row * row.transpose();
+    sum += row;
   }
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.rows());
   Eigen::Vector3d best = Eigen::Vector3d::Zero();
   double least = std::numeric_limits<double>::infinity();
   for (unsigned kept = 1; kept < (1u << kSteps); ++kept) {
-    std::vector<Eigen::Index> columns;
+    // The normal equations; those of a step that is left out say that it is zero.
+    Eigen::Matrix3d left = products;
+    Eigen::Vector3d right = sum;
     for (Eigen::Index k = 0; k < kSteps; ++k) {
-      if (((kept >> k) & 1u) != 0) columns.push_back(k);
+      if (((kept >> k) & 1u) != 0) continue;
+      left.row(k).setZero();
+      left.col(k).setZero();
+      left(k, k) = 1;
+      right[k] = 0;
     }
-    const Eigen::MatrixXd part = rows(Eigen::all, columns);
-    const Eigen::VectorXd steps = (part.transpose() * part).ldlt().solve(part.transpose() * ones);
-    const double error = (part * steps - ones).squaredNorm();
+    const Eigen::Vector3d steps = left.ldlt().solve(right);
+    double error = 0;
+    for (const Eigen::Vector3d& row : rows) error += (row.dot(steps) - 1) * (row.dot(steps) - 1);
     if (!(steps.minCoeff() >= 0) || !(error < least)) continue;
     least = error;
-    best.setZero();
-    best(columns) = steps;
+    best = steps;
   }
   return {best[0], best[1], best[2]};
 }

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cerrno>
+#include <optional>
 #include <system_error>
+#include <utility>
 #ifndef _WIN32
 #include <fcntl.h>
 #include <spawn.h>
@@ -12,10 +14,9 @@
 #include <unistd.h>
 #endif
 
-#include <nlohmann/json.hpp>
-
 #include "cooker/system/input_failure.h"
 #include "cooker/system/posix.h"
+#include "cooker/text/json.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -69,6 +70,22 @@ Result<std::string> output_of(const std::vector<std::string>& command, bool quie
 }
 #endif
 
+std::optional<PeerRow> row_of(const Json& json) {
+  PeerRow row;
+  const std::array texts{std::pair("mesh", &PeerRow::mesh), std::pair("library", &PeerRow::library),
+                         std::pair("variant", &PeerRow::variant),
+                         std::pair("metric", &PeerRow::metric), std::pair("unit", &PeerRow::unit)};
+  for (const auto& [key, text] : texts) {
+    const Json* const found = json.find(key);
+    if (found == nullptr || !found->is_string()) return std::nullopt;
+    row.*text = found->get<std::string>();
+  }
+  const Json* const value = json.find("value");
+  if (value == nullptr || !value->is_number()) return std::nullopt;
+  row.value = value->get<double>();
+  return row;
+}
+
 }  // namespace
 
 Result<std::vector<PeerRow>> run_peers(const std::filesystem::path& program,
@@ -78,15 +95,21 @@ Result<std::vector<PeerRow>> run_peers(const std::filesystem::path& program,
   command.emplace_back("--json");
   const Result<std::string> text = output_of(command, quiet);
   if (!text) return text.error();
+  const ParsedJson document = parse_json(*text);
+  const Json* const list = document.value.find("rows");
+  if (list == nullptr || !list->is_array()) {
+    return Error{Errc::kDocumentInvalid,
+                 program.string() + ": printed no JSON with an array \"rows\""};
+  }
   std::vector<PeerRow> rows;
-  try {
-    const auto document = nlohmann::json::parse(*text);
-    for (const auto& row : document.at("rows")) {
-      rows.push_back({row.at("mesh"), row.at("library"), row.at("variant"), row.at("metric"),
-                      row.at("value"), row.at("unit")});
+  for (const Json& json : *list) {
+    std::optional<PeerRow> row = row_of(json);
+    if (!row) {
+      return Error{Errc::kDocumentInvalid,
+                   program.string() + ": rows[" + std::to_string(rows.size()) +
+                       "] is no row as boxtree_peers prints it: " + json.dump()};
     }
-  } catch (const nlohmann::json::exception& error) {
-    return Error{Errc::kDocumentInvalid, program.string() + ": " + error.what()};
+    rows.push_back(*std::move(row));
   }
   return rows;
 }

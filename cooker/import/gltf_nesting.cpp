@@ -180,4 +180,9 @@ Result<Json> parse_gltf(std::string_view text) {
   return document;
 }
 
+Status check_gltf(std::string_view text) {
+  const Result<Json> document = parse_gltf(text);
+  return document ? Status() : document.error();
+}
+
 }  // namespace boxtree::cooker

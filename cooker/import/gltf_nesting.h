@@ -23,6 +23,9 @@ inline constexpr std::uint32_t kMaxJsonDepth = 256;
 /// has two members of one name. O(bytes log bytes).
 Result<nlohmann::json> parse_gltf(std::string_view text);
 
+/// The same errors, for those who read the text otherwise.
+Status check_gltf(std::string_view text);
+
 /// What keeps `text` from being JSON, in words; empty if nothing does. O(bytes).
 [[nodiscard]] std::string json_fault(std::string_view text);
 

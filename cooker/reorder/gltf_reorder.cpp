@@ -12,19 +12,17 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/glb.h"
 #include "cooker/import/gltf_nesting.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/reorder/reorder.h"
 #include "cooker/system/path.h"
+#include "cooker/text/json.h"
 #include "cooker/text/percent.h"
 
 namespace boxtree::cooker {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Numbers of the glTF 2.0 specification.
 constexpr std::uint32_t kGlbMagic = 0x46546c67u;  // "glTF"
@@ -44,16 +42,19 @@ constexpr std::uint64_t kModeTriangleFan = 6;
 constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
 
 std::uint64_t number_at(const Json& object, const char* key, std::uint64_t otherwise) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>()
-                                                              : otherwise;
+  const Json* const found = object.find(key);
+  return found != nullptr && found->is_number_unsigned() ? found->get<std::uint64_t>() : otherwise;
+}
+
+bool is_array(const Json& object, std::string_view key) {
+  const Json* const found = object.find(key);
+  return found != nullptr && found->is_array();
 }
 
 // An object of one of the document's arrays; null if it is not there.
 const Json* object_of(const Json& document, const char* array, std::uint64_t number) {
-  const auto found = document.find(array);
-  if (found == document.end() || !found->is_array() || number >= found->size()) return nullptr;
-  const Json& object = (*found)[number];
+  if (!is_array(document, array) || number >= document[array].size()) return nullptr;
+  const Json& object = document[array][number];
   return object.is_object() ? &object : nullptr;
 }
 
@@ -154,25 +155,22 @@ class GltfReorder {
       if (rest.size() >= kChunkHeaderBytes) std::memcpy(chunk.data(), rest.data(), sizeof(chunk));
       if (chunk[1] == kBinaryChunk) binary_ = rest.substr(kChunkHeaderBytes, chunk[0]);
     }
-    if (const auto checked = parse_gltf(json); !checked) return checked.error();  // its nesting
-    document_ = Json::parse(json, nullptr, false);
-    const Json* const asset =
-        document_.is_object() && document_.contains("asset") ? &document_["asset"] : nullptr;
+    if (Status status = check_gltf(json); !status) return status;
+    document_ = parse_json(json, kMaxJsonDepth).value;
+    const Json* const asset = document_.find("asset");
     if (asset == nullptr || !asset->is_object()) return has_changed("it is no glTF");
-    const auto version = asset->find("version");
-    const bool is_2 = version != asset->end() && version->is_string() &&
-                      version->get_ref<const std::string&>().starts_with("2.");
+    const Json* const version = asset->find("version");
+    const bool is_2 =
+        version != nullptr && version->is_string() && version->get<std::string>().starts_with("2.");
     return is_2 ? Status() : unsupported("glTF 2.0 alone is written");
   }
 
   Status find_triangles() {
-    const auto meshes = document_.find("meshes");
-    if (meshes == document_.end() || !meshes->is_array()) return has_changed("it has no meshes");
+    if (!is_array(document_, "meshes")) return has_changed("it has no meshes");
     std::size_t count = 0;
-    for (Json& mesh : *meshes) {
-      const auto primitives = mesh.find("primitives");
-      if (primitives == mesh.end() || !primitives->is_array()) continue;
-      for (Json& primitive : *primitives) {
+    for (Json& mesh : document_["meshes"]) {
+      if (!is_array(mesh, "primitives")) continue;
+      for (Json& primitive : mesh["primitives"]) {
         const std::uint64_t mode = number_at(primitive, "mode", kModeTriangles);
         if (mode < kModeTriangles || mode > kModeTriangleFan) continue;
         if (mode != kModeTriangles) {
@@ -180,8 +178,8 @@ class GltfReorder {
               "its triangles are in strips or fans, which have an order of their own: write it "
               "with triangles (mode 4)");
         }
-        if (primitive.contains("extensions") &&
-            primitive["extensions"].contains("KHR_draco_mesh_compression")) {
+        const Json* const extensions = primitive.find("extensions");
+        if (extensions != nullptr && extensions->contains("KHR_draco_mesh_compression")) {
           return unsupported("a primitive is compressed (KHR_draco_mesh_compression)");
         }
         primitive_ = &primitive;
@@ -216,9 +214,9 @@ class GltfReorder {
     if (buffer == nullptr) return has_changed("a buffer is missing");
     std::string bytes;
     std::string_view source = binary_;
-    if (buffer->contains("uri")) {
-      if (!(*buffer)["uri"].is_string()) return has_changed("a buffer is missing");
-      const auto& uri = (*buffer)["uri"].get_ref<const std::string&>();
+    if (const Json* const named = buffer->find("uri")) {
+      if (!named->is_string()) return has_changed("a buffer is missing");
+      const auto uri = named->get<std::string>();
       if (const auto data = data_of(uri)) {
         bytes = *data;
       } else {
@@ -239,9 +237,9 @@ class GltfReorder {
 
   // Without numbers, each three vertices in turn are a triangle.
   Status count_numbers() {
-    const auto attributes = primitive_->find("attributes");
+    const Json* const attributes = primitive_->find("attributes");
     const Json* const positions =
-        attributes == primitive_->end()
+        attributes == nullptr
             ? nullptr
             : object_of(document_, "accessors", number_at(*attributes, "POSITION", kNone));
     if (positions == nullptr) return has_changed("a primitive has no positions");
@@ -279,7 +277,7 @@ class GltfReorder {
   // they are in the file.
   [[nodiscard]] bool has_place_of_its_own() const {
     const std::uint64_t used = number_at(*primitive_, "indices", kNone);
-    if (used == kNone || buffer_ != 0 || document_["buffers"][0].contains("uri")) return false;
+    if (used == kNone || buffer_ != 0 || !first_buffer_is_chunk()) return false;
     const Json& accessor = document_["accessors"][used];
     if (number_at(accessor, "count", 0) != 3 * reordering_.faces.size()) return false;
     const std::uint64_t view = number_at(accessor, "bufferView", kNone);
@@ -288,8 +286,8 @@ class GltfReorder {
       users += number_at(other, "bufferView", kNone) == view ? 1u : 0u;
     }
     for (const Json& mesh : document_["meshes"]) {
-      const auto primitives = mesh.find("primitives");
-      if (primitives == mesh.end()) continue;
+      const Json* const primitives = mesh.find("primitives");
+      if (primitives == nullptr) continue;
       for (const Json& primitive : *primitives) {
         if (&primitive != primitive_ && number_at(primitive, "indices", kNone) == used) {
           return false;
@@ -299,18 +297,21 @@ class GltfReorder {
     return users == 1;
   }
 
+  [[nodiscard]] bool first_buffer_is_chunk() const {
+    const Json* const buffer = object_of(document_, "buffers", 0);
+    return buffer != nullptr && !buffer->contains("uri");
+  }
+
   // A buffer view and an accessor for the numbers, at the end of the binary chunk or in a buffer of
   // their own.
   void add_accessor() {
-    const auto append = [this](const char* array, Json object) {
+    const auto append = [this](const char* array, Json object) -> std::uint64_t {
       document_[array].push_back(std::move(object));
       return document_[array].size() - 1;
     };
     std::uint64_t buffer = 0;
     std::uint64_t offset = 0;
-    const bool has_chunk =
-        is_binary_ && !binary_.empty() && !document_["buffers"][0].contains("uri");
-    if (has_chunk) {
+    if (is_binary_ && !binary_.empty() && first_buffer_is_chunk()) {
       appended_at_ = offset = (binary_.size() + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment;
       document_["buffers"][0]["byteLength"] = offset + numbers_.size();
     } else {
@@ -336,11 +337,11 @@ class GltfReorder {
     const std::string way = percent_encoded(reordering_.way());
     if (way.empty()) return false;
     for (const char* array : {"buffers", "images"}) {
-      const auto found = document_.find(array);
-      if (found == document_.end() || !found->is_array()) continue;
-      for (Json& object : *found) {
-        if (!object.contains("uri") || !object["uri"].is_string()) continue;
-        const std::string uri = object["uri"];
+      if (!is_array(document_, array)) continue;
+      for (Json& object : document_[array]) {
+        const Json* const named = object.find("uri");
+        if (named == nullptr || !named->is_string()) continue;
+        const auto uri = named->get<std::string>();
         const std::size_t colon = uri.find(':');  // of a scheme, if no slash comes before it
         if (uri.starts_with('/') || colon < uri.find('/')) continue;
         object["uri"] = way + uri;

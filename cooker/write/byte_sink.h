@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cstddef>
-#include <iterator>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -34,9 +34,9 @@ class ByteSink {
 
   template <class... Values>
   void print(fmt::format_string<Values...> format, Values&&... values) {
-    text_.clear();
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
-    write(std::as_bytes(std::span(text_.data(), text_.size())));
+    // Not fmt::format_to: the code that prints numbers would be compiled here again.
+    const std::string text = fmt::format(format, std::forward<Values>(values)...);
+    write(std::as_bytes(std::span(text)));
   }
 
   /// Number of bytes appended so far.
@@ -59,7 +59,6 @@ class ByteSink {
   AtomicFile& file_;
   std::vector<std::byte> buffer_;
   std::uint64_t flushed_ = 0;
-  fmt::memory_buffer text_;
   Status status_;
 };
 

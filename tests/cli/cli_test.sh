@@ -1423,7 +1423,16 @@ expect 2 "$boxtree" report cube.obj --include missing.json
 expect 2 "$boxtree" report cube.obj --quick --peers missing
 expect 2 "$boxtree" report cube.obj --quick --peers /bin/false
 expect 3 "$boxtree" report cube.obj --quick --peers /bin/true
-grep -q 'document_invalid: /bin/true' err
+grep -q 'document_invalid: /bin/true: printed no JSON with an array "rows"' err
+row='{"mesh":"cube","library":"peer","variant":"","metric":"ray_ns","value":1,"unit":"ns"}'
+for second in '{"value":1}' '[]' 2 "${row/1/\"1\"}" "${row/\"ns\"/3}"; do
+  printf '#!/bin/sh\necho %s\n' "'{\"rows\":[$row,$second]}'" >peer.sh
+  chmod +x peer.sh
+  expect 3 "$boxtree" report cube.obj --quick --peers ./peer.sh
+  grep -qF 'peer.sh: rows[1] is no row as boxtree_peers prints it: ' err
+done
+printf '#!/bin/sh\necho %s\n' "'{\"rows\":[$row]}'" >peer.sh
+expect 0 "$boxtree" report cube.obj --quick --peers ./peer.sh
 expect 3 "$boxtree" report cube.obj --include cube.obj
 grep -q 'document_invalid: cube.obj: expected rows .* boxtree_stiff and boxtree_robustness .*, found no JSON' err
 expect 0 "$boxtree" report --help
