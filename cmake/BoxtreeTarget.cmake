@@ -59,9 +59,9 @@ endfunction()
 #   SMALL    what is not on the way of a query is compiled for size, and
 #   COMPACT  what takes little of its time without the copies of code that -O3 makes.
 # Sources that these name and the library does not have are left out. LINK says what the sources need of others,
-# as target_link_libraries does, and PRECOMPILE which headers are parsed once for all of them. The target property
-# BOXTREE_PARTS lists the targets that compile them, one for each way: g++ compiles sources with the optimisations
-# of the headers that are precompiled for them.
+# as target_link_libraries does, and PRECOMPILE which headers are parsed once for all of them, where CMAKE_UNITY_BUILD
+# does not make them few. The target property BOXTREE_PARTS lists the targets that compile them, one for each way: g++
+# compiles sources with the optimisations of the headers that are precompiled for them.
 function(boxtree_add_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SMALL;COMPACT;LINK;PRECOMPILE")
   set(sources ${arg_UNPARSED_ARGUMENTS})
@@ -87,7 +87,7 @@ function(boxtree_add_library name)
     target_include_directories(${part} PUBLIC $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}>)
     boxtree_set_target(${part})
     target_link_libraries(${part} ${arg_LINK})
-    if(arg_PRECOMPILE AND BOXTREE_PRECOMPILE_HEADERS)
+    if(arg_PRECOMPILE AND BOXTREE_PRECOMPILE_HEADERS AND NOT CMAKE_UNITY_BUILD)
       target_precompile_headers(${part} PRIVATE ${arg_PRECOMPILE})
     endif()
     if(NOT part STREQUAL boxtree_${name})

@@ -6,8 +6,9 @@
 #include "runtime/walk/targets.h"
 #include "runtime/walk/walk_tree.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/query/cast_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -281,8 +282,8 @@ class CastFaces {
 };
 
 template <class Node>
-Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, CastQuery& query,
-          CastLeaves& leaves) {
+Errc walk_cast_nodes(const BoundTree& tree, const WideCodec<Node>& codec, CastQuery& query,
+                     CastLeaves& leaves) {
   CastFaces<Node> faces(tree, codec, query, leaves);
   return NearestWalk<Node, CastFaces<Node>>(codec, faces).run(root_box<float>(tree));
 }
@@ -291,7 +292,7 @@ Errc walk_cast(const BoundTree& tree, CastQuery& query) {
   const CastFilter filter(query);
   CastLeaves leaves(tree, query, filter);
   return leaves.finish(with_wide_codec<Errc>(
-      tree, [&](const auto& codec) { return walk(tree, codec, query, leaves); }));
+      tree, [&](const auto& codec) { return walk_cast_nodes(tree, codec, query, leaves); }));
 }
 #endif
 

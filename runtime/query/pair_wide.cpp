@@ -6,8 +6,9 @@
 #include "runtime/walk/targets.h"
 #include "runtime/walk/walk_tree.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/query/pair_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -260,17 +261,18 @@ class WidePairWalk {
 };
 
 template <class Node>
-Result<Visit> walk(const BoundTree& first, const WideCodec<Node>& first_codec,
-                   const BoundTree& second, const WideCodec<Node>& second_codec,
-                   const RelativePose& pose, const PairFilter& filter, PairVisitor visitor,
-                   PairBound& bound) {
+Result<Visit> walk_pair_nodes(const BoundTree& first, const WideCodec<Node>& first_codec,
+                              const BoundTree& second, const WideCodec<Node>& second_codec,
+                              const RelativePose& pose, const PairFilter& filter,
+                              PairVisitor visitor, PairBound& bound) {
   return WidePairWalk<Node>(first, first_codec, second, second_codec, pose, filter, visitor, bound)
       .run(root_box<float>(first), root_box<float>(second));
 }
 Result<Visit> walk_pair(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
                         const PairFilter& filter, PairVisitor visitor, PairBound& bound) {
   return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {
-    return walk(first, codec, second, second.nodes().as<C>(), pose, filter, visitor, bound);
+    return walk_pair_nodes(first, codec, second, second.nodes().as<C>(), pose, filter, visitor,
+                           bound);
   });
 }
 #endif

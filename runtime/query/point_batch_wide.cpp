@@ -14,8 +14,9 @@
 #include "runtime/walk/targets.h"
 #include "runtime/walk/walk_tree.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/query/point_batch_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -30,7 +31,7 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-void walk_batch(PointBatch& batch) {
+void walk_point_batch(PointBatch& batch) {
   for (std::size_t i = 0; i < batch.points.size(); ++i) batch.answer_alone(i);
 }
 #else
@@ -243,9 +244,9 @@ class PointPacket {
 };
 
 template <class Node>
-class PacketWalk {
+class PointPacketWalk {
  public:
-  PacketWalk(const BoundTree& tree, const WideCodec<Node>& codec, PointPacket& packet)
+  PointPacketWalk(const BoundTree& tree, const WideCodec<Node>& codec, PointPacket& packet)
       : codec_(codec), packet_(packet), prefetch_(tree, codec) {}
 
   // Whether a walk together pays: it does from some 4 points a node or leaf on
@@ -322,16 +323,16 @@ class PacketWalk {
 };
 
 template <class Node>
-Errc walk(const WideCodec<Node>& codec, PointBatch& batch) {
+Errc walk_packets_of_points(const WideCodec<Node>& codec, PointBatch& batch) {
   PointPacket packet(batch);
-  PacketWalk<Node> walk(batch.tree, codec, packet);
+  PointPacketWalk<Node> walk(batch.tree, codec, packet);
   answer_in_packets(batch.points.size(), packet, walk);
   return Errc::kOk;
 }
 
-void walk_batch(PointBatch& batch) {
-  static_cast<void>(
-      with_wide_codec<Errc>(batch.tree, [&](const auto& codec) { return walk(codec, batch); }));
+void walk_point_batch(PointBatch& batch) {
+  static_cast<void>(with_wide_codec<Errc>(
+      batch.tree, [&](const auto& codec) { return walk_packets_of_points(codec, batch); }));
 }
 #endif
 
@@ -345,12 +346,12 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-BOXTREE_EXPORT(walk_batch);
+BOXTREE_EXPORT(walk_point_batch);
 
 }  // namespace
 
 void walk_wide(PointBatch& batch) {
-  BOXTREE_DISPATCH(walk_batch)(batch);
+  BOXTREE_DISPATCH(walk_point_batch)(batch);
 }
 
 }  // namespace boxtree

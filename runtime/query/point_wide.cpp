@@ -7,8 +7,9 @@
 #include "runtime/walk/targets.h"
 #include "runtime/walk/walk_tree.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/query/point_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -108,7 +109,7 @@ class PointFaces {
 };
 
 template <class Node>
-Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query) {
+Errc walk_point_nodes(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query) {
   const Box<float> root = root_box<float>(tree);
   if (query.key(root) > query.bound()) return Errc::kOk;
   PointFaces<Node> faces(tree, codec, query);
@@ -176,7 +177,8 @@ Errc search_point(const BoundTree& tree, PointQuery& query, SearchBudget& budget
 }
 
 Errc walk_point(const BoundTree& tree, PointQuery& query) {
-  return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
+  return with_wide_codec<Errc>(
+      tree, [&](const auto& codec) { return walk_point_nodes(tree, codec, query); });
 }
 #endif
 

@@ -12,8 +12,9 @@
 #include "runtime/walk/targets.h"
 #include "runtime/walk/walk_tree.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/query/ray_batch_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -28,7 +29,7 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-void walk_batch(RayBatch& batch) {
+void walk_ray_batch(RayBatch& batch) {
   for (std::size_t i = 0; i < batch.rays.size(); ++i) batch.answer_alone(i);
 }
 #else
@@ -215,9 +216,9 @@ class RayPacket {
 };
 
 template <class Node>
-class PacketWalk {
+class RayPacketWalk {
  public:
-  PacketWalk(const BoundTree& tree, const WideCodec<Node>& codec, RayPacket& packet)
+  RayPacketWalk(const BoundTree& tree, const WideCodec<Node>& codec, RayPacket& packet)
       : codec_(codec),
         packet_(packet),
         prefetch_(tree, codec),
@@ -314,20 +315,20 @@ class PacketWalk {
 };
 
 template <class Node>
-Errc walk(const WideCodec<Node>& codec, RayBatch& batch) {
+Errc walk_packets_of_rays(const WideCodec<Node>& codec, RayBatch& batch) {
   RayPacket packet(batch);
-  PacketWalk<Node> walk(batch.tree, codec, packet);
+  RayPacketWalk<Node> walk(batch.tree, codec, packet);
   answer_in_packets(batch.rays.size(), packet, walk, batch.any);
   return Errc::kOk;
 }
 
-void walk_batch(RayBatch& batch) {
+void walk_ray_batch(RayBatch& batch) {
   if (!RaySetUp::takes(batch.tree)) {
     for (std::size_t i = 0; i < batch.rays.size(); ++i) batch.answer_alone(i);
     return;
   }
-  static_cast<void>(
-      with_wide_codec<Errc>(batch.tree, [&](const auto& codec) { return walk(codec, batch); }));
+  static_cast<void>(with_wide_codec<Errc>(
+      batch.tree, [&](const auto& codec) { return walk_packets_of_rays(codec, batch); }));
 }
 #endif
 
@@ -341,12 +342,12 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-BOXTREE_EXPORT(walk_batch);
+BOXTREE_EXPORT(walk_ray_batch);
 
 }  // namespace
 
 void walk_wide(RayBatch& batch) {
-  BOXTREE_DISPATCH(walk_batch)(batch);
+  BOXTREE_DISPATCH(walk_ray_batch)(batch);
 }
 
 }  // namespace boxtree

@@ -6,8 +6,9 @@
 #include "runtime/walk/targets.h"
 #include "runtime/walk/walk_tree.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/query/ray_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -187,12 +188,13 @@ class RayWalk {
 };
 
 template <class Node>
-Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, FilteredRay& ray) {
+Errc walk_ray_nodes(const BoundTree& tree, const WideCodec<Node>& codec, FilteredRay& ray) {
   return RayWalk<Node>(tree, codec, ray).run(tree.root_lanes());
 }
 
 Errc walk_filtered(const BoundTree& tree, FilteredRay& ray) {
-  return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, ray); });
+  return with_wide_codec<Errc>(tree,
+                               [&](const auto& codec) { return walk_ray_nodes(tree, codec, ray); });
 }
 
 Errc walk_ray(const BoundTree& tree, RayQuery& query) {

@@ -3,8 +3,9 @@
 #include "runtime/query/overlap_batch_query.h"
 #include "runtime/walk/targets.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/query/sphere_batch_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -16,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
-void walk_batch(SphereBatch& batch) {
+void walk_sphere_batch(SphereBatch& batch) {
 #if HWY_TARGET == HWY_SCALAR
   for (std::size_t i = 0; i < batch.shapes.size(); ++i) batch.answer_alone(i);
 #else
@@ -34,12 +35,12 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-BOXTREE_EXPORT(walk_batch);
+BOXTREE_EXPORT(walk_sphere_batch);
 
 }  // namespace
 
 void walk_wide(SphereBatch& batch) {
-  BOXTREE_DISPATCH(walk_batch)(batch);
+  BOXTREE_DISPATCH(walk_sphere_batch)(batch);
 }
 
 }  // namespace boxtree

@@ -8,8 +8,9 @@
 #include "runtime/scene/top_level_walk.h"
 #include "runtime/walk/targets.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/scene/top_level_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>

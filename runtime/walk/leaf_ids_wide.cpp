@@ -2,8 +2,9 @@
 #include "runtime/walk/leaf_ids.h"
 #include "runtime/walk/targets.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/walk/leaf_ids_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -22,7 +23,7 @@ HWY_INLINE WordVector low_bits(WordVector words, std::uint32_t width) {
   return hn::AndNot(hn::ShiftLeftSame(set(~0u), static_cast<int>(width)), words);
 }
 
-void read(const FaceIdView& ids, std::uint32_t leaf, std::span<std::uint32_t, kLeafFaces> out) {
+void read_ids(const FaceIdView& ids, std::uint32_t leaf, std::span<std::uint32_t, kLeafFaces> out) {
   constexpr std::uint32_t kHalf = kLeafFaces / 2;
   constexpr std::uint32_t kLoadBits = 128;
   const std::uint32_t first = leaf * kLeafFaces;
@@ -71,7 +72,7 @@ void read(const FaceIdView& ids, std::uint32_t leaf, std::span<std::uint32_t, kL
              out.data());
 }
 #else
-void read(const FaceIdView& ids, std::uint32_t leaf, std::span<std::uint32_t, kLeafFaces> out) {
+void read_ids(const FaceIdView& ids, std::uint32_t leaf, std::span<std::uint32_t, kLeafFaces> out) {
   ids.read_leaf(leaf, out);
 }
 #endif
@@ -86,13 +87,13 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-BOXTREE_EXPORT(read);
+BOXTREE_EXPORT(read_ids);
 
 }  // namespace
 
 void read_leaf_ids_wide(const FaceIdView& ids, std::uint32_t leaf,
                         std::span<std::uint32_t, kLeafFaces> out) noexcept {
-  BOXTREE_DISPATCH(read)(ids, leaf, out);
+  BOXTREE_DISPATCH(read_ids)(ids, leaf, out);
 }
 
 }  // namespace boxtree

@@ -2,8 +2,9 @@
 #include "runtime/walk/read_leaf.h"
 #include "runtime/walk/targets.h"
 
-#undef HWY_TARGET_INCLUDE
+#ifndef HWY_TARGET_INCLUDE  // compiled alone
 #define HWY_TARGET_INCLUDE "runtime/walk/read_leaf_wide.cpp"
+#endif
 #include <hwy/foreach_target.h>
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -15,12 +16,12 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if BOXTREE_HAS_EIGHT_LANES
-bool read(const BoundTree& tree, NodeRef leaf, TriangleBatch& out) {
+bool read_triangles(const BoundTree& tree, NodeRef leaf, TriangleBatch& out) {
   LeafFloats floats(tree);
   return floats.load(leaf.first, leaf.second) && floats.exact_triangles(out);
 }
 #else
-bool read(const BoundTree&, NodeRef, TriangleBatch&) {
+bool read_triangles(const BoundTree&, NodeRef, TriangleBatch&) {
   return false;
 }
 #endif
@@ -35,12 +36,12 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-BOXTREE_EXPORT(read);
+BOXTREE_EXPORT(read_triangles);
 
 }  // namespace
 
 bool read_leaf_wide(const BoundTree& tree, NodeRef leaf, TriangleBatch& out) noexcept {
-  return BOXTREE_DISPATCH(read)(tree, leaf, out);
+  return BOXTREE_DISPATCH(read_triangles)(tree, leaf, out);
 }
 
 }  // namespace boxtree

@@ -3,7 +3,7 @@
 # Builds the runtime with its vectors and without a build type, as in a program whose CMake sets none, and runs
 # every query. Where nothing is inlined, functions of several sources that have one name and differ are one function:
 # calls by instruction set went to null pointers.
-# Several sources at a time, as projects with CMAKE_UNITY_BUILD do; those with vectors stay alone.
+# Each source alone, which is what that takes.
 #   unoptimised_test.sh SOURCE COMPILER BOXTREE
 set -euo pipefail
 source=$1 compiler=$2 boxtree=$3
@@ -21,8 +21,7 @@ add_subdirectory($source boxtree)
 add_executable(queries $source/tests/size/programs/runtime.cpp)
 target_link_libraries(queries PRIVATE boxtree::runtime)
 CMAKE
-quiet cmake -S "$work" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE= \
-  -DCMAKE_UNITY_BUILD=ON
+quiet cmake -S "$work" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=
 quiet cmake --build "$work/build" -j2 --target queries
 # Nor does the library bring a function of that kind to other sources of the program.
 nm -C "$work/build/boxtree/runtime/libboxtree_runtime.a" >"$work/symbols"

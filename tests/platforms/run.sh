@@ -122,7 +122,7 @@ built() {
   local name=$1
   shift
   if cmake -S "$source" -B "$work/$name" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBOXTREE_BUILD_COOKER=OFF \
-    -DCMAKE_UNITY_BUILD=ON -DBOXTREE_PRECOMPILE_HEADERS=OFF "$@" >"$work/$name.log" 2>&1 &&
+    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 -DBOXTREE_PRECOMPILE_HEADERS=OFF "$@" >"$work/$name.log" 2>&1 &&
     cmake --build "$work/$name" --target boxtree_c boxtree_c_static >>"$work/$name.log" 2>&1; then
     return 0
   fi
