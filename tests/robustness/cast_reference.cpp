@@ -9,15 +9,16 @@
 
 #include "runtime/tree/bound_tree.h"
 #include "tests/robustness/mesh_kinds.h"
+#include "tests/support/infinity.h"
 
 namespace boxtree::robustness {
 namespace {
 
+using test::kInfinity;
 using test::LongShape;
 using test::LongTriangle;
 using test::LongVector;
 
-constexpr long double kInfinity = std::numeric_limits<long double>::infinity();
 // What cast.h allows, in units of the largest coordinate.
 constexpr long double kDoubt = 0x1p-46L;
 // Long double tells no difference below this part of the largest coordinate.

@@ -13,6 +13,7 @@
 #include "tests/support/require.h"
 
 namespace boxtree::stiff {
+namespace case_bounce {
 namespace {
 
 constexpr double kRadius = 0.5;
@@ -293,8 +294,10 @@ void add_surface(Field kind, const Scale& scale, CaseResult& result) {
 }
 
 }  // namespace
+}  // namespace case_bounce
 
 CaseResult run_bounce(const Scale& scale) {
+  using namespace case_bounce;
   CaseResult result;
   for (const Field kind : {Field::kFlat, Field::kSine}) add_surface(kind, scale, result);
   return result;

@@ -12,6 +12,7 @@
 #include "tests/stiff/world.h"
 
 namespace boxtree::stiff {
+namespace case_rest {
 namespace {
 
 constexpr unsigned kSteps = 16;  // of the stairs, a box on each
@@ -215,8 +216,10 @@ void add_time_plots(const Outcome& right, const Outcome& wrong, std::vector<Name
 }
 
 }  // namespace
+}  // namespace case_rest
 
 CaseResult run_rest(const Scale& scale) {
+  using namespace case_rest;
   CaseResult result;
   const Group exact = group_of(exact_store());
   const Group grid = group_of(grid_store(16));

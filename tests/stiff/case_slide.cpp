@@ -12,6 +12,7 @@
 #include "tests/stiff/world.h"
 
 namespace boxtree::stiff {
+namespace case_slide {
 namespace {
 
 constexpr double kTile = 16;
@@ -71,8 +72,10 @@ Outcome simulate(const Shape& level, const Shape& body, double stiffness) {
 }
 
 }  // namespace
+}  // namespace case_slide
 
 CaseResult run_slide(const Scale& scale) {
+  using namespace case_slide;
   using enum Row::Limit;
   CaseResult result;
   const SourceMesh mesh = field(Field::kTilted, kCells, kTile);

@@ -12,6 +12,7 @@
 #include "tests/stiff/world.h"
 
 namespace boxtree::stiff {
+namespace case_stack {
 namespace {
 
 constexpr unsigned kSteps = 4;
@@ -81,8 +82,10 @@ Outcome simulate(const Group& group, std::size_t codec, const Run& run) {
 }
 
 }  // namespace
+}  // namespace case_stack
 
 CaseResult run_stack(const Scale& scale) {
+  using namespace case_stack;
   using enum Row::Limit;
   CaseResult result;
   const Group group;

@@ -14,6 +14,7 @@
 #include "tests/stiff/world.h"
 
 namespace boxtree::stiff {
+namespace case_swap {
 namespace {
 
 constexpr unsigned kSteps = 16;
@@ -108,8 +109,10 @@ SourceMesh with_half_vertices(SourceMesh mesh) {
 }
 
 }  // namespace
+}  // namespace case_swap
 
 CaseResult run_swap(const Scale& scale) {
+  using namespace case_swap;
   using enum Row::Limit;
   CaseResult result;
   SourceMesh mesh = stairs(kSteps, 1, kLevelSize);

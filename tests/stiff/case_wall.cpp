@@ -15,6 +15,7 @@
 #include "tests/stiff/world.h"
 
 namespace boxtree::stiff {
+namespace case_wall {
 namespace {
 
 constexpr unsigned kWalls = 8;
@@ -61,8 +62,10 @@ Outcome simulate(const Shape& level, const Shape& body, double share_of_wall) {
 }
 
 }  // namespace
+}  // namespace case_wall
 
 CaseResult run_wall(const Scale&) {
+  using namespace case_wall;
   using enum Row::Limit;
   CaseResult result;
   const SourceMesh mesh = walls(kWalls, kThickness, kSize);

@@ -11,6 +11,7 @@
 #include "tests/oracle/exact/queries.h"
 
 namespace boxtree::oracle {
+namespace family_boxes {
 namespace {
 
 using Faces = std::vector<std::uint32_t>;
@@ -169,8 +170,10 @@ void check_within(const Setting& s, const Cooked& cooked, double distance, Tally
 }
 
 }  // namespace
+}  // namespace family_boxes
 
 void run_boxes(Draw& draw, Tally& tally, std::uint64_t number) {
+  using namespace family_boxes;
   constexpr int kBoxes = 40;
   const auto subject = make_subject(draw_mesh(draw), draw.one_in(3));
   tally.begin_case(number, subject->mesh.faces.size(), subject->mesh.name);

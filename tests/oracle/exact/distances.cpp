@@ -14,6 +14,7 @@
 #include "tests/support/infinity.h"
 
 namespace boxtree::oracle {
+namespace family_distances {
 namespace {
 
 using test::kInfinity;
@@ -225,8 +226,10 @@ void check_all(Setting& s, Draw& draw, Tally& tally) {
 }
 
 }  // namespace
+}  // namespace family_distances
 
 void run_distances(Draw& draw, Tally& tally, std::uint64_t number) {
+  using namespace family_distances;
   constexpr int kPoses = 10;
   const bool grid = draw.one_in(4);
   const MeshWish wish{true, true, 10};

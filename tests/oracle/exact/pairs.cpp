@@ -10,6 +10,7 @@
 #include "tests/oracle/exact/poses.h"
 
 namespace boxtree::oracle {
+namespace family_pairs {
 namespace {
 
 using FacePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
@@ -141,8 +142,10 @@ void check_all(Setting& s, Draw& draw, Tally& tally) {
 }
 
 }  // namespace
+}  // namespace family_pairs
 
 void run_pairs(Draw& draw, Tally& tally, std::uint64_t number) {
+  using namespace family_pairs;
   constexpr int kPoses = 12;
   const bool grid = draw.one_in(4);
   const MeshWish wish{true, true, 32};

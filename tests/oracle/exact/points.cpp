@@ -14,6 +14,7 @@
 #include "tests/support/infinity.h"
 
 namespace boxtree::oracle {
+namespace family_points {
 namespace {
 
 using test::kInfinity;
@@ -254,8 +255,10 @@ void check_all(const Setting& s, bool with_bounds, Tally& tally) {
 }
 
 }  // namespace
+}  // namespace family_points
 
 void run_points(Draw& draw, Tally& tally, std::uint64_t number) {
+  using namespace family_points;
   constexpr int kPoints = 40;
   const auto subject = make_subject(draw_mesh(draw), draw.one_in(3));
   tally.begin_case(number, subject->mesh.faces.size(), subject->mesh.name);

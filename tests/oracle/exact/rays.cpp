@@ -14,6 +14,7 @@
 #include "tests/support/infinity.h"
 
 namespace boxtree::oracle {
+namespace family_rays {
 namespace {
 
 using test::kInfinity;
@@ -177,8 +178,10 @@ Ray draw_ray(Draw& d, const Group& group) {
 }
 
 }  // namespace
+}  // namespace family_rays
 
 void run_rays(Draw& draw, Tally& tally, std::uint64_t number) {
+  using namespace family_rays;
   constexpr int kRays = 40;
   const auto subject = make_subject(draw_mesh(draw), draw.one_in(3));
   tally.begin_case(number, subject->mesh.faces.size(), subject->mesh.name);

@@ -20,6 +20,7 @@
 #include "tests/oracle/exact/scene_subject.h"
 
 namespace boxtree::oracle {
+namespace family_scenes {
 namespace {
 
 using SceneFaces = std::set<std::pair<std::uint32_t, std::uint32_t>>;  // id of the instance, face
@@ -435,8 +436,10 @@ void check_contacts(const State& s, Draw& draw) {
 }
 
 }  // namespace
+}  // namespace family_scenes
 
 void run_scenes(Draw& draw, Tally& tally, std::uint64_t number) {
+  using namespace family_scenes;
   constexpr int kRounds = 5, kUpdates = 300;
   const auto subject = draw_scene(draw);
   if (!subject) {

@@ -10,6 +10,7 @@
 #include "tests/oracle/exact/queries.h"
 
 namespace boxtree::oracle {
+namespace family_spheres {
 namespace {
 
 using Faces = std::vector<std::uint32_t>;
@@ -111,8 +112,10 @@ void check_all(const Setting& s, Tally& tally) {
 }
 
 }  // namespace
+}  // namespace family_spheres
 
 void run_spheres(Draw& draw, Tally& tally, std::uint64_t number) {
+  using namespace family_spheres;
   constexpr int kSpheres = 40;
   const auto subject = make_subject(draw_mesh(draw), draw.one_in(3));
   tally.begin_case(number, subject->mesh.faces.size(), subject->mesh.name);
