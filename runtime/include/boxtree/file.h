@@ -21,7 +21,8 @@ struct Member;
 /// How a file is opened.
 struct OpenOptions {
   /// Read the file into private memory instead of mapping it [default false]: for files that other
-  /// programs may modify in place. Only for open(path).
+  /// programs may modify in place. On Linux, from 8 MB on and without `memory`, that is in huge
+  /// pages if the system has any. Only for open(path).
   bool copy = false;
   /// Check the XXH3 of every section [default false]: reads the whole file.
   bool verify_checksums = false;

@@ -4,6 +4,8 @@
 #ifndef _WIN32
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
@@ -20,6 +22,7 @@
 
 #include <boxtree/boxtree.h>
 
+#include "runtime/file/mapping.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temp_folder.h"
@@ -41,9 +44,9 @@ struct MappedPages {
   std::string flags;  // "rd mr mw me sr"
 };
 
-MappedPages pages_of(const File& file) {
+MappedPages pages_of(Bytes bytes) {
   std::ostringstream first;
-  first << std::hex << reinterpret_cast<std::uintptr_t>(file.bytes().data()) << '-';
+  first << std::hex << reinterpret_cast<std::uintptr_t>(bytes.data()) << '-';
   std::ifstream maps("/proc/self/smaps");
   MappedPages pages;
   bool is_found = false;
@@ -65,7 +68,7 @@ TEST(FileAdvice, ReachesTheSystem) {
   ASSERT_TRUE(file.ok());
   const auto flags_after = [&](Access access) {
     EXPECT_TRUE(file->advise(access));
-    return pages_of(*file).flags;
+    return pages_of(file->bytes()).flags;
   };
   EXPECT_NE(flags_after(Access::kRandom).find(" rr"), std::string::npos);
   EXPECT_EQ(flags_after(Access::kSequential).find(" rr"), std::string::npos);
@@ -77,9 +80,9 @@ TEST(FileAdvice, GivesMemoryBack) {
   const test::TempFolder folder;
   const Result<File> file = File::open(folder.write("terrain.bxt", test::cooked_pages()));
   ASSERT_TRUE(file.ok() && verify_checksums(*file).ok());
-  EXPECT_GE(pages_of(*file).resident_kilobytes, file->bytes().size() / 1024);
+  EXPECT_GE(pages_of(file->bytes()).resident_kilobytes, file->bytes().size() / 1024);
   EXPECT_TRUE(file->advise(Access::kDontNeed));
-  EXPECT_EQ(pages_of(*file).resident_kilobytes, 0u);
+  EXPECT_EQ(pages_of(file->bytes()).resident_kilobytes, 0u);
   EXPECT_TRUE(verify_checksums(*file).ok());
 }
 
@@ -130,6 +133,40 @@ TEST(FileAdvice, FollowsAFileThatMoves) {
   EXPECT_FALSE(first.advise(Access::kDontNeed));
   EXPECT_TRUE(second.advise(Access::kDontNeed));
   EXPECT_TRUE(verify_checksums(first).ok());
+}
+
+// Of the whole process.
+std::size_t mapped_pages() {
+  std::ifstream sizes("/proc/self/statm");
+  std::size_t pages = 0;
+  sizes >> pages;
+  return pages;
+}
+
+TEST(FileCopy, OfManyPagesIsInHugeOnes) {
+  if (!std::filesystem::exists("/sys/kernel/mm/transparent_hugepage/enabled")) {
+    GTEST_SKIP() << "the system has no huge pages";
+  }
+  const test::TempFolder folder;
+  std::string text(9'000'123, '.');
+  for (std::size_t i = 0; i < text.size(); i += 997) text[i] = static_cast<char>(i / 997 % 251);
+  const std::filesystem::path path = folder.write("large", text);
+  const auto is_text = [&](Bytes bytes) {
+    return bytes.size() == text.size() && std::memcmp(bytes.data(), text.data(), text.size()) == 0;
+  };
+  std::size_t at_first = 0;
+  for (int i = 0; i < 64; ++i) {
+    const Result<Mapping> copy = Mapping::copy(path);
+    ASSERT_TRUE(copy.ok());
+    const Bytes bytes = copy->bytes();
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(bytes.data()) % (2u << 20), 0u);
+    EXPECT_NE(pages_of(bytes).flags.find(" hg"), std::string::npos);
+    EXPECT_TRUE(is_text(bytes));
+    if (i == 0) at_first = mapped_pages();
+  }
+  // Nothing of 64 copies is left.
+  EXPECT_LT(mapped_pages(),
+            at_first + text.size() / static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)));
 }
 
 }  // namespace
