@@ -20,10 +20,8 @@
 namespace boxtree {
 namespace {
 
-// Of x86-64, and of arm64 where other pages have 4 KB.
-constexpr std::size_t kHugePage = std::size_t{1} << 21;
 // What the 2048 entries of a processor's second-level TLB reach in pages of 4 KB.
-constexpr std::size_t kWorthHugePages = std::size_t{1} << 23;
+[[maybe_unused]] constexpr std::size_t kWorthHugePages = std::size_t{1} << 23;
 
 class Descriptor {
  public:
@@ -126,28 +124,12 @@ Result<Mapping> Mapping::copy(const std::string& path, const Memory& memory) {
 }
 
 void* WritableMapping::pages(std::size_t size) noexcept {
-  const auto map = [](std::size_t bytes) -> std::byte* {
-    void* const data =
-        ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    return data == MAP_FAILED ? nullptr : static_cast<std::byte*>(data);
-  };
-#ifdef MADV_HUGEPAGE  // Linux
-  if (size >= kWorthHugePages && size < std::numeric_limits<std::size_t>::max() - 2 * kHugePage) {
-    const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-    const std::size_t whole = (size + page - 1) / page * page;
-    std::byte* const data = map(whole + kHugePage);
-    if (data == nullptr) return nullptr;
-    // A huge page begins at a multiple of its size: what is in front of the first and behind the
-    // end goes back.
-    const std::size_t past = reinterpret_cast<std::uintptr_t>(data) % kHugePage;
-    const std::size_t before = past == 0 ? 0 : kHugePage - past;
-    if (before != 0) ::munmap(data, before);
-    ::munmap(data + before + whole, kHugePage - before);
-    ::madvise(data + before, whole, MADV_HUGEPAGE);  // where there are none, nothing is lost
-    return data + before;
-  }
+  void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (data == MAP_FAILED) return nullptr;
+#ifdef MADV_HUGEPAGE  // Linux; where it has none, nothing is lost
+  if (size >= kWorthHugePages) ::madvise(data, size, MADV_HUGEPAGE);
 #endif
-  return map(size);
+  return data;
 }
 
 }  // namespace boxtree
