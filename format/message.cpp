@@ -36,6 +36,10 @@ Error error_at(std::string_view place, const Error& error) {
   return placed;
 }
 
+Error error_in(std::string_view place, const Error& error) {
+  return error_at(error_with(error.code, place, ": ").detail, error);
+}
+
 Error error_of(std::string_view what, std::uint64_t number, const Error& error) {
   return error_at(error_with(error.code, what, " #: ", {number}).detail, error);
 }

@@ -18,6 +18,8 @@ namespace boxtree {
 
 /// The error, its detail after `place`.
 [[nodiscard]] Error error_at(std::string_view place, const Error& error);
+/// The same with ": " between them.
+[[nodiscard]] Error error_in(std::string_view place, const Error& error);
 
 /// The error, its detail after "tree 2: ", of what is called `what`.
 [[nodiscard]] Error error_of(std::string_view what, std::uint64_t number, const Error& error);

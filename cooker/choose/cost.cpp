@@ -53,7 +53,10 @@ StepCost fit_steps(std::span<const Measured> measured) {
     }
     const Eigen::Vector3d steps = left.ldlt().solve(right);
     double error = 0;
-    for (const Eigen::Vector3d& row : rows) error += (row.dot(steps) - 1) * (row.dot(steps) - 1);
+    for (const Eigen::Vector3d& row : rows) {
+      const double off = row.dot(steps) - 1;
+      error += off * off;
+    }
     if (!(steps.minCoeff() >= 0) || !(error < least)) continue;
     least = error;
     best = steps;

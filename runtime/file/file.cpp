@@ -16,9 +16,7 @@ Result<File> File::open(const std::string& path, const OpenOptions& options) {
   Result<Mapping> mapping = options.copy ? Mapping::copy(path, options.memory) : Mapping::map(path);
   if (!mapping) return mapping.error();
   Result<File> checked = OpenFile::open(std::move(*mapping), options);
-  if (!checked) {
-    return error_at(error_with(checked.code(), path, ": ").detail, checked.error());
-  }
+  if (!checked) return error_in(path, checked.error());
   return checked;
 }
 

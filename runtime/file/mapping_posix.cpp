@@ -9,7 +9,6 @@
 #include <string>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -19,9 +18,6 @@
 
 namespace boxtree {
 namespace {
-
-// What the 2048 entries of a processor's second-level TLB reach in pages of 4 KB.
-[[maybe_unused]] constexpr std::size_t kWorthHugePages = std::size_t{1} << 23;
 
 class Descriptor {
  public:
@@ -38,12 +34,6 @@ class Descriptor {
  private:
   int value_;
 };
-
-Error system_error(Errc code, const std::string& path, int number) {
-  return error_at(
-      error_with(code, path, ": ").detail,
-      {number == ENOMEM ? Errc::kOutOfMemory : code, std::generic_category().message(number)});
-}
 
 // Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.
 Result<std::size_t> regular_file_size(int file, const std::string& path) {
@@ -76,7 +66,7 @@ Result<Mapping> Mapping::map(int descriptor, const std::string& name) {
   if (!size) return size.error();
   if (*size == 0) return Mapping();
   void* data = ::mmap(nullptr, *size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-  if (data == MAP_FAILED) return system_error(Errc::kMapFailed, name, errno);
+  if (data == MAP_FAILED) return system_failure(Errc::kMapFailed, name, errno);
   return Mapping(static_cast<const std::byte*>(data), *size, true);
 }
 
@@ -111,7 +101,7 @@ Result<Mapping> Mapping::copy(const std::string& path, const Memory& memory) {
   if (!size) return size.error();
   if (*size == 0) return Mapping();
   Result<WritableMapping> copied = WritableMapping::allocate(*size, memory);
-  if (!copied) return error_at(error_with(copied.code(), path, ": ").detail, copied.error());
+  if (!copied) return error_in(path, copied.error());
   std::byte* const data = copied->bytes().data();
   for (std::size_t done = 0; done < *size;) {
     const ssize_t got = ::pread(file.value(), data + done, *size - done, static_cast<off_t>(done));
@@ -127,6 +117,8 @@ void* WritableMapping::pages(std::size_t size) noexcept {
   void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (data == MAP_FAILED) return nullptr;
 #ifdef MADV_HUGEPAGE  // Linux; where it has none, nothing is lost
+  // What the 2048 entries of a processor's second-level TLB reach in pages of 4 KB.
+  constexpr std::size_t kWorthHugePages = std::size_t{1} << 23;
   if (size >= kWorthHugePages) ::madvise(data, size, MADV_HUGEPAGE);
 #endif
   return data;

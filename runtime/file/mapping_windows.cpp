@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "format/message.h"
 #include "runtime/file/mapping.h"
 #include "runtime/file/windows_path.h"
 
@@ -114,7 +115,7 @@ Result<Mapping> Mapping::copy(const std::string& path, const Memory& memory) {
   if (!size) return size.error();
   if (*size == 0) return Mapping();
   Result<WritableMapping> copied = WritableMapping::allocate(*size, memory);
-  if (!copied) return Error{copied.code(), path + ": " + copied.error().detail};
+  if (!copied) return error_in(path, copied.error());
   constexpr std::size_t kMostAtATime = std::size_t{1} << 30;
   std::byte* const data = copied->bytes().data();
   for (std::size_t done = 0; done < *size;) {

@@ -34,9 +34,12 @@ Error read_failure(const std::string& path, int reason, const std::string& named
                           : ": no such file; check the name, which is relative to the current "
                             "folder");
   }
-  return error_at(error_with(Errc::kOk, path, ": ").detail,
-                  {reason == ENOMEM ? Errc::kOutOfMemory : Errc::kFileUnreadable,
-                   std::generic_category().message(reason)});
+  return system_failure(Errc::kFileUnreadable, path, reason);
+}
+
+Error system_failure(Errc code, const std::string& path, int reason) {
+  return error_in(path, {reason == ENOMEM ? Errc::kOutOfMemory : code,
+                         std::generic_category().message(reason)});
 }
 
 }  // namespace boxtree

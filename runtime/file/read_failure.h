@@ -15,4 +15,7 @@ namespace boxtree {
 [[nodiscard]] Error read_failure(const std::string& path, int reason,
                                  const std::string& named_in = {});
 
+/// The error `code` for `path`, with the system's `reason`; kOutOfMemory where that is the reason.
+[[nodiscard]] Error system_failure(Errc code, const std::string& path, int reason);
+
 }  // namespace boxtree

@@ -11,7 +11,7 @@ std::string section_text(SectionKind kind) {
 }
 
 Error section_error(SectionKind kind, const Error& error) {
-  return error_at(error_with(error.code, section_text(kind), ": ").detail, error);
+  return error_in(section_text(kind), error);
 }
 
 Result<const std::byte*> sized_section(Bytes section, SectionKind kind, std::uint64_t count,
