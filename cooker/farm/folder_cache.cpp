@@ -87,14 +87,19 @@ fs::path FolderCache::output_path(const Digest& output) const {
 }
 
 std::optional<CookCache::Entry> FolderCache::read_entry(const Digest& key) const {
-  const Result<std::string> text = read_whole_file(entry_path(key), kMaxEntryBytes);
-  if (!text) return std::nullopt;
+  const fs::path place = entry_path(key);
+  const Result<std::string> text = read_whole_file(place, kMaxEntryBytes);
+  if (!text) return std::nullopt;  // as a rule there is none
   const std::optional<Json> json = checked_json(*text);
-  if (!json || text_at(*json, "key") != hex_of(key)) return std::nullopt;
-  const std::optional<Digest> output = digest_of(text_at(*json, "output"));
-  const Json* const bytes = json->find("bytes");
-  if (!output || bytes == nullptr || !bytes->is_number_unsigned()) return std::nullopt;
-  return Entry{*output, bytes->get<std::uint64_t>(), text_at(*json, "report")};
+  if (json && text_at(*json, "key") == hex_of(key)) {
+    const std::optional<Digest> output = digest_of(text_at(*json, "output"));
+    const Json* const bytes = json->find("bytes");
+    if (output && bytes != nullptr && bytes->is_number_unsigned()) {
+      return Entry{*output, bytes->get<std::uint64_t>(), text_at(*json, "report")};
+    }
+  }
+  note_damage(place, fmt::format("an entry of key {}", hex_of(key)));
+  return std::nullopt;
 }
 
 Result<std::optional<CookCache::Entry>> FolderCache::find(const Digest& key,
@@ -108,7 +113,12 @@ Result<std::optional<CookCache::Entry>> FolderCache::find(const Digest& key,
     return entry;
   }
   std::error_code error;
-  if (fs::file_size(cached, error) != entry->bytes || error) return std::optional<Entry>();
+  const std::uint64_t found_bytes = fs::file_size(cached, error);
+  if (error) return std::optional<Entry>();  // removed, as keep_cache_size() does
+  if (found_bytes != entry->bytes) {
+    note_damage(cached, fmt::format("{} bytes, found {}", entry->bytes, found_bytes));
+    return std::optional<Entry>();
+  }
   Result<AtomicFile> file = AtomicFile::create(output);
   if (!file) return file.error();
   Sha256 sha;
@@ -119,11 +129,24 @@ Result<std::optional<CookCache::Entry>> FolderCache::find(const Digest& key,
     if (written) written = file->write(std::as_bytes(std::span(chunk)));
   });
   if (!written) return written.error();
-  if (!read || sha.finish() != entry->output) return std::optional<Entry>();
+  if (!read) {
+    note(read.error());
+    return std::optional<Entry>();
+  }
+  if (sha.finish() != entry->output) {
+    note_damage(cached, "bytes of the SHA-256 that is its name");
+    return std::optional<Entry>();
+  }
   if (Status status = file->commit(); !status) return status.error();
   note_use(entry_path(key));
   note_use(cached);
   return entry;
+}
+
+void FolderCache::note_damage(const fs::path& file, const std::string& expected) const {
+  note({Errc::kFileUnreadable,
+        fmt::format("{}: damaged in the cache: expected {}; it is cooked and stored anew",
+                    file.string(), expected)});
 }
 
 Result<CookCache::Entry> FolderCache::keep(const Digest& key, const fs::path& output,

@@ -40,6 +40,7 @@ class FolderCache final : public CookCache {
   [[nodiscard]] std::filesystem::path entry_path(const Digest& key) const;
   [[nodiscard]] std::filesystem::path output_path(const Digest& output) const;
   [[nodiscard]] std::optional<Entry> read_entry(const Digest& key) const;
+  void note_damage(const std::filesystem::path& file, const std::string& expected) const;
 
   std::filesystem::path folder_;
   std::uint64_t most_bytes_;
