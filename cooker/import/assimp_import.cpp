@@ -139,6 +139,13 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
                    fmt::format("no reader knows how it begins; expected a file of the format {}",
                                source.path().extension().string())};
     }
+    if (has_extension(source.path(), "step") || has_extension(source.path(), "stp")) {
+      return Error{
+          Errc::kImportFailed,
+          fmt::format("expected IFC, which of STEP alone has a reader; shapes of CAD have no "
+                      "faces yet: mesh them, e.g. as .stl by gmsh or FreeCAD ({})",
+                      why)};
+    }
     return Error{Errc::kImportFailed, why.empty() ? "no scene" : why};
   }
   if (!log.loss().empty()) {

@@ -67,6 +67,16 @@ TEST_F(ImportErrorTest, WhatIsNoMeshAtAllIsToldSo) {
                   "found .toml; cook --profile takes a profile"));
   EXPECT_TRUE(has(fail("script.glb", script).detail,
                   "no reader knows how it begins; expected a file of the format .glb"));
+  // Found by a newcomer: CAD was called binary data or a file schema of IFC.
+  const std::string step =
+      "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n"
+      "#1=CARTESIAN_POINT('',(0.,0.,0.));\nENDSEC;\nEND-ISO-10303-21;\n";
+  for (const char* const name : {"part.step", "part.stp", "PART.STP"}) {
+    EXPECT_TRUE(has(fail(name, step).detail,
+                    "expected IFC, which of STEP alone has a reader; shapes of CAD have no faces "
+                    "yet: mesh them, e.g. as .stl by gmsh or FreeCAD (IFC: Unrecognized file "
+                    "schema: AUTOMOTIVE_DESIGN)"));
+  }
   const std::string cooked(reinterpret_cast<const char*>(kMagic.data()), kMagic.size());
   for (const char* const name : {"cooked.bxt", "cooked.obj", "cooked"}) {
     EXPECT_TRUE(has(fail(name, cooked + "and more").detail,
