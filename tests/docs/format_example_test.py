@@ -40,7 +40,8 @@ class Example:
         output = work / arguments[arguments.index("-o") + 1]
         arguments[arguments.index("-o") + 1] = str(output)
         subprocess.run([boxtree, *arguments, "-q"], cwd=source, check=True)
-        file = reader.File(output.read_bytes())
+        self.file_bytes = output.read_bytes()
+        file = reader.File(self.file_bytes)
         records = file.section(1)
         trees = [reader.Tree(file, i, records[128 * i:128 * (i + 1)]) for i in range(len(records) // 128)]
         self.tree = next(tree for tree in trees if tree.name == name)
@@ -112,6 +113,22 @@ class Example:
                 entered = int(row[4])
 
 
+def check_export(source, boxtree, text, crate):
+    """The command below the examples writes the faces that the second reader finds, in its order."""
+    command = text[text.index("```sh\n") + 6:text.index("\n```\n")]
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        (work / "crate.bxt").write_bytes(crate.file_bytes)
+        words = command.split()
+        assert words[0] == "boxtree", command
+        subprocess.run([boxtree, *words[1:]], cwd=work, check=True, stdout=subprocess.DEVNULL)
+        lines = [line.split() for line in (work / "crate.obj").read_text(encoding="utf-8").splitlines()]
+    vertices = [[float(x) for x in line[1:]] for line in lines if line[:1] == ["v"]]
+    faces = [[vertices[int(number) - 1] for number in line[1:]] for line in lines if line[:1] == ["f"]]
+    step = 2.0 ** crate.tree.grid_exponent
+    assert faces == [[[x * step for x in point] for point in face] for face in crate.tree.clusters.faces]
+
+
 def main():
     source, boxtree = pathlib.Path(sys.argv[1]), sys.argv[2]
     sys.path.insert(0, str(source / "tests/golden"))
@@ -135,6 +152,7 @@ def main():
     quads.check_fields(False)
     quads.check_faces()
     exact.check_fields(False)
+    check_export(source, boxtree, text[end:], level)
     # What the text says of the trees.
     assert f"The tree `crate`, number {level.number}, of" in text
     assert (level.tree.geometry, level.tree.corners_per_face, level.tree.exponent,
