@@ -290,10 +290,11 @@ std::string with_underscores(std::string key) {
 Result<BatchLine> parse_line(std::string_view text) {
   constexpr std::size_t kDeepest = 4;
   const ParsedJson parsed = parse_json(text, kDeepest);
-  const auto& [fault, byte, json, keys] = parsed;
-  switch (fault) {
+  const Json& json = parsed.value;
+  const std::vector<std::string>& keys = parsed.keys;
+  switch (parsed.fault) {
     case ParsedJson::Fault::kNoJson:
-      return invalid(fmt::format("expected a JSON object, found no JSON at byte {}", byte));
+      return invalid(fmt::format("expected a JSON object, found no JSON at byte {}", parsed.byte));
     case ParsedJson::Fault::kTooLarge:
       return invalid(
           "expected a JSON object of finite numbers, found one beyond what a double holds");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -39,6 +40,36 @@ Library library_value(const Json& json) {
   return object;
 }
 
+// Of members with the same name the last value stays, in the place of the first. Returns such a
+// name.
+std::optional<std::string> unite_members(std::vector<Json::Member>& members) {
+  std::vector<std::size_t> order(members.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto name = [&members](std::size_t i) { return std::string_view(members[i].key); };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return name(a) < name(b); });
+  std::optional<std::string> twice;
+  std::vector<bool> is_united(members.size());
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (name(order[i]) != name(order[first])) {
+      first = i;
+      continue;
+    }
+    twice = members[order[i]].key;
+    members[order[first]].value.swap(members[order[i]].value);
+    is_united[order[i]] = true;
+  }
+  if (twice) {
+    std::vector<Json::Member> kept;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      if (!is_united[i]) kept.push_back(std::move(members[i]));
+    }
+    members = std::move(kept);
+  }
+  return twice;
+}
+
 // Builds a document of what the library's parser meets.
 class JsonBuilder {
  public:
@@ -52,15 +83,15 @@ class JsonBuilder {
   bool string(const std::string& value) { return put(value); }
   bool binary(const Library::binary_t& /*value*/) { return false; }  // JSON has none
 
-  bool start_object(std::size_t /*size*/) { return open(Json::object()); }
-  bool start_array(std::size_t /*size*/) { return open(Json::array()); }
+  bool start_object(std::size_t /*size*/) { return open(true); }
+  bool start_array(std::size_t /*size*/) { return open(false); }
   bool end_object() { return close(); }
   bool end_array() { return close(); }
 
   bool key(const std::string& name) {
     if (is_storing()) {
-      place_ = &(*open_.back())[name];
       if (depth_ == 1) parsed_.keys.push_back(name);
+      open_.back().members.push_back({name, {}});
     }
     return true;
   }
@@ -74,47 +105,102 @@ class JsonBuilder {
   }
 
  private:
+  // An array or object whose end was not met yet.
+  struct Open {
+    bool is_object;
+    std::vector<Json::Member> members;
+    std::vector<Json> elements;
+  };
+
   // What is nested too deep is still read to its end: text that is no JSON is the fault to name.
   bool is_storing() {
     if (depth_ > deepest_) parsed_.fault = ParsedJson::Fault::kTooDeep;
     return parsed_.fault == ParsedJson::Fault::kNone;
   }
 
-  // Where the next value goes.
-  Json& place() {
-    if (open_.empty()) return parsed_.value;
-    return open_.back()->is_array() ? open_.back()->emplace_back() : *place_;
-  }
-
   bool put(Json value) {
-    if (is_storing()) place() = std::move(value);
+    if (!is_storing()) return true;
+    if (open_.empty()) {
+      parsed_.value = std::move(value);
+    } else if (open_.back().is_object) {
+      open_.back().members.back().value = std::move(value);
+    } else {
+      open_.back().elements.push_back(std::move(value));
+    }
     return true;
   }
 
-  bool open(Json value) {
-    if (is_storing()) {
-      Json& opened = place();
-      opened = std::move(value);
-      open_.push_back(&opened);
-    }
+  bool open(bool is_object) {
+    if (is_storing()) open_.push_back({is_object, {}, {}});
     ++depth_;
     return true;
   }
 
   bool close() {
     --depth_;
-    if (is_storing()) open_.pop_back();
-    return true;
+    if (!is_storing()) return true;
+    Open closed = std::move(open_.back());
+    open_.pop_back();
+    if (!closed.is_object) return put(Json::array_of(std::move(closed.elements)));
+    if (std::optional<std::string> twice = unite_members(closed.members); twice && !parsed_.twice) {
+      parsed_.twice = std::move(twice);
+    }
+    return put(Json::object_of(std::move(closed.members)));
   }
 
   ParsedJson& parsed_;
   const std::size_t deepest_;
   std::size_t depth_ = 0;
-  std::vector<Json*> open_;  // arrays and objects, which do not move while they are open
-  Json* place_ = nullptr;    // the member of the innermost object whose key was read last
+  std::vector<Open> open_;
 };
 
 }  // namespace
+
+// Of an object with few members each is compared with a name; of others they are sorted, so that a
+// text with very many takes no longer than another of its size.
+struct Json::Object {
+  explicit Object(std::vector<Member> from) : members(std::move(from)) { sort_many(); }
+
+  [[nodiscard]] Member* find(std::string_view name) {
+    if (by_name.empty()) {
+      const auto found = std::find_if(members.begin(), members.end(),
+                                      [name](const Member& each) { return each.key == name; });
+      return found == members.end() ? nullptr : &*found;
+    }
+    const auto at = place_of(name);
+    return at != by_name.end() && members[*at].key == name ? &members[*at] : nullptr;
+  }
+
+  // Precondition: there is none of that name.
+  Member& add(std::string_view name) {
+    if (!by_name.empty()) {
+      by_name.insert(place_of(name), static_cast<std::uint32_t>(members.size()));
+    }
+    members.push_back({std::string(name), {}});
+    if (by_name.empty()) sort_many();
+    return members.back();
+  }
+
+  std::vector<Member> members;
+  std::vector<std::uint32_t> by_name;  // their numbers in the order of their names; empty if few
+
+ private:
+  static constexpr std::size_t kFew = 16;
+
+  void sort_many() {
+    if (members.size() <= kFew) return;
+    by_name.resize(members.size());
+    std::iota(by_name.begin(), by_name.end(), std::uint32_t{0});
+    std::sort(by_name.begin(), by_name.end(),
+              [this](std::uint32_t a, std::uint32_t b) { return members[a].key < members[b].key; });
+  }
+
+  std::vector<std::uint32_t>::iterator place_of(std::string_view name) {
+    return std::lower_bound(
+        by_name.begin(), by_name.end(), name,
+        [this](std::uint32_t i, std::string_view key) { return members[i].key < key; });
+  }
+};
 
 Json::Json(std::string_view text) : kind_(Kind::kText) {
   value_.text = new std::string(text);
@@ -124,7 +210,7 @@ Json::Json(std::initializer_list<Item> list) : Json(Item::json_of(list)) {}
 Json::Json(const Json& other) : kind_(other.kind_), value_(other.value_) {
   if (kind_ == Kind::kText) value_.text = new std::string(*other.value_.text);
   if (kind_ == Kind::kArray) value_.array = new std::vector<Json>(*other.value_.array);
-  if (kind_ == Kind::kObject) value_.object = new std::vector<Member>(*other.value_.object);
+  if (kind_ == Kind::kObject) value_.object = new Object(*other.value_.object);
 }
 
 void Json::destroy() noexcept {
@@ -156,8 +242,11 @@ Json Json::array_of(std::span<const std::string> texts) {
 }
 
 Json Json::object() {
+  return object_of({});
+}
+Json Json::object_of(std::vector<Member> members) {
   Json json;
-  json.value_.object = new std::vector<Member>;
+  json.value_.object = new Object(std::move(members));
   json.kind_ = Kind::kObject;
   return json;
 }
@@ -255,16 +344,14 @@ std::string Json::get() const {
 
 std::size_t Json::size() const {
   if (kind_ == Kind::kArray) return value_.array->size();
-  return kind_ == Kind::kObject ? value_.object->size() : 0;
+  return kind_ == Kind::kObject ? value_.object->members.size() : 0;
 }
 
 Json& Json::operator[](std::string_view key) {
   if (is_null()) *this = object();
   assert(is_object());
-  for (Member& member : *value_.object) {
-    if (member.key == key) return member.value;
-  }
-  return value_.object->emplace_back(Member{std::string(key), {}}).value;
+  Member* const found = value_.object->find(key);
+  return (found != nullptr ? *found : value_.object->add(key)).value;
 }
 
 const Json& Json::operator[](std::string_view key) const {
@@ -274,17 +361,16 @@ const Json& Json::operator[](std::string_view key) const {
 }
 
 const Json* Json::find(std::string_view key) const {
-  for (const auto& [name, value] : items()) {
-    if (name == key) return &value;
-  }
-  return nullptr;
+  if (!is_object()) return nullptr;
+  const Member* const found = value_.object->find(key);
+  return found == nullptr ? nullptr : &found->value;
 }
 
 std::span<Json::Member> Json::items() {
-  return is_object() ? std::span<Member>(*value_.object) : std::span<Member>();
+  return is_object() ? std::span(value_.object->members) : std::span<Member>();
 }
 std::span<const Json::Member> Json::items() const {
-  return is_object() ? std::span<const Member>(*value_.object) : std::span<const Member>();
+  return is_object() ? std::span<const Member>(value_.object->members) : std::span<const Member>();
 }
 
 void Json::update(const Json& other) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -57,6 +58,8 @@ class Json {
   static Json array_of(std::span<const std::uint32_t> numbers);
   static Json array_of(std::span<const std::string> texts);
   static Json object();
+  /// Precondition: no two have the same name.
+  static Json object_of(std::vector<Member> members);
 
   [[nodiscard]] bool is_null() const { return kind_ == Kind::kNull; }
   [[nodiscard]] bool is_boolean() const { return kind_ == Kind::kFlag; }
@@ -81,7 +84,7 @@ class Json {
   [[nodiscard]] bool empty() const { return size() == 0; }
 
   /// The member of that name, which is added as null if there is none. Precondition: an object, or
-  /// null, which becomes one.
+  /// null, which becomes one. This and find(): O(log members).
   Json& operator[](std::string_view key);
   /// Precondition: an object that has it.
   const Json& operator[](std::string_view key) const;
@@ -113,6 +116,7 @@ class Json {
   [[nodiscard]] std::string dump(int indent = -1, bool ascii = false) const;
 
  private:
+  struct Object;
   // Those from kText on are on the heap.
   enum class Kind : std::uint8_t {
     kNull,
@@ -131,7 +135,7 @@ class Json {
     double real;
     std::string* text;
     std::vector<Json>* array;
-    std::vector<Member>* object;
+    Object* object;
   };
 
   void destroy() noexcept;
@@ -228,9 +232,12 @@ struct ParsedJson {
   /// Those of the outermost object, in its order and each as often as it is there; up to the fault
   /// kTooDeep.
   std::vector<std::string> keys;
+  /// A name that several members of one object have.
+  std::optional<std::string> twice;
 };
 
-/// Reads a whole text. Of members with the same name the last one counts.
+/// Reads a whole text. Of members with the same name the last one counts, in the place of the
+/// first. O(bytes log bytes).
 [[nodiscard]] ParsedJson parse_json(std::string_view text, std::size_t deepest = 64);
 
 }  // namespace boxtree::cooker

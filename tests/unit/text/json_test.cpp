@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -161,6 +163,59 @@ TEST(ParsedJson, IsAtMostSoDeep) {
   EXPECT_EQ(parse_json(std::string(1'000'000, '[')).fault, Fault::kNoJson);
   EXPECT_EQ(parse_json(std::string(1'000'000, '[') + std::string(1'000'000, ']')).fault,
             Fault::kTooDeep);
+}
+
+TEST(ParsedJson, HasTheLastOfMembersWithOneNameInThePlaceOfTheFirst) {
+  const ParsedJson parsed =
+      parse_json(R"({"a": 1, "b": {"x": 1, "x": 2, "x": [3]}, "a": 4, "": 5, "c": 6})");
+  EXPECT_EQ(parsed.value.dump(), R"({"a":4,"b":{"x":[3]},"":5,"c":6})");
+  EXPECT_EQ(parsed.twice, "x");
+  EXPECT_EQ(parsed.keys, (std::vector<std::string>{"a", "b", "a", "", "c"}));
+  EXPECT_EQ(parse_json(R"({"a": {"b": 1}, "b": [{"a": 1}, {"a": 2}]})").twice, std::nullopt);
+  EXPECT_EQ(parse_json(R"({"": 1, "": 2})").twice, "");
+}
+
+// Found by reading: each member was looked for among all before, so that a glTF file of 2 MB took
+// half a minute to reorder, and one of 20 MB an hour.
+TEST(ParsedJson, MayHaveVeryManyMembers) {
+  constexpr std::uint64_t kMany = 300'000;
+  std::string text = "{";
+  for (std::uint64_t i = 0; i < kMany; ++i) text += fmt::format("\"k{}\":{},", i * 7919 % kMany, i);
+  Json value = parse_json(text + "\"last\":7}").value;
+  EXPECT_EQ(value.size(), kMany + 1);
+  const auto expect_all = [&] {
+    for (std::uint64_t i = 0; i < kMany; ++i) {
+      const Json* const found = value.find(fmt::format("k{}", i * 7919 % kMany));
+      ASSERT_TRUE(found != nullptr && found->get<std::uint64_t>() == i);
+    }
+  };
+  expect_all();
+  EXPECT_EQ(value.find("k"), nullptr);
+  EXPECT_EQ(value.find(fmt::format("k{}", kMany)), nullptr);
+  EXPECT_EQ(value.items().front().key, "k0");
+  EXPECT_EQ(value.items().back().key, "last");
+  for (int i = 0; i < 1000; ++i) value[fmt::format("added {}", i)] = i;
+  value["last"] = 8;
+  expect_all();
+  EXPECT_EQ(value["last"].get<std::uint32_t>(), 8u);
+  EXPECT_EQ(value["added 999"].get<std::uint32_t>(), 999u);
+  EXPECT_EQ(value.size(), kMany + 1001);
+}
+
+// With as many members as are compared one by one, and one more.
+TEST(JsonObjects, FindTheirMembersHoweverManyThereAre) {
+  Json value = Json::object();
+  for (int count = 0; count < 40; ++count) {
+    EXPECT_EQ(value.find(fmt::format("k{}", count)), nullptr);
+    value[fmt::format("k{}", count)] = count;
+    const Json copy = value;
+    for (int i = 0; i <= count; ++i) {
+      const std::string name = fmt::format("k{}", i);
+      ASSERT_NE(copy.find(name), nullptr);
+      EXPECT_EQ(copy.find(name)->get<std::uint32_t>(), static_cast<std::uint32_t>(i));
+    }
+  }
+  EXPECT_EQ(value.items().back().key, "k39");
 }
 
 }  // namespace
