@@ -21,7 +21,6 @@
 #include <assimp/scene.h>
 #include <assimp/version.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/collada_values.h"
 #include "cooker/import/f32_digits.h"
@@ -47,8 +46,6 @@
 
 namespace boxtree::cooker {
 namespace {
-
-using Json = nlohmann::json;
 
 enum class FaceOrder : std::uint8_t { kOfFile, kByMaterial };
 
@@ -227,7 +224,7 @@ Result<GltfFacts> check_gltf(const SourceFile& source, ImportReport& report) {
   const Result<Json> document = read_gltf(source);
   if (!document.ok()) return document.error();
   // What is no JSON to us may be some to assimp, and would be read without a check.
-  if (document->is_discarded()) {
+  if (document->is_null()) {
     const std::string fault = gltf_fault(source);
     if (!fault.empty()) return in_file(source.title(), Error{Errc::kImportFailed, fault});
   }

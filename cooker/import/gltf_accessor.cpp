@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <array>
-
-#include <nlohmann/json.hpp>
+#include <string>
 
 #include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_primitives.h"
 
 namespace boxtree::cooker {
-
-using Json = nlohmann::json;
 
 bool GltfComponent::is_unsigned() const noexcept {
   return type == kUnsignedByte || type == kUnsignedShort || type == kUnsignedInt;
@@ -33,8 +30,8 @@ const GltfComponent* component_of(const Json& accessor) {
 }
 
 bool has_type(const Json& accessor, const char* type) {
-  const auto found = accessor.find("type");
-  return found != accessor.end() && *found == type;
+  const Json* const found = accessor.find("type");
+  return found != nullptr && found->is_string() && found->get<std::string>() == type;
 }
 
 const Json& accessor_at(const Json& document, const Json& object, const char* key) {
@@ -44,8 +41,8 @@ const Json& accessor_at(const Json& document, const Json& object, const char* ke
 
 const Json& positions_of(const Json& document, const Json& primitive) {
   static const Json kNone;
-  const auto attributes = primitive.find("attributes");
-  return attributes == primitive.end() ? kNone : accessor_at(document, *attributes, "POSITION");
+  const Json* const attributes = primitive.find("attributes");
+  return attributes == nullptr ? kNone : accessor_at(document, *attributes, "POSITION");
 }
 
 }  // namespace boxtree::cooker

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include <nlohmann/json_fwd.hpp>
+#include "cooker/text/json.h"
 
 namespace boxtree::cooker {
 
@@ -22,17 +22,15 @@ struct GltfComponent {
 };
 
 /// Of an accessor or another object with a componentType; null if that is none.
-[[nodiscard]] const GltfComponent* component_of(const nlohmann::json& accessor);
+[[nodiscard]] const GltfComponent* component_of(const Json& accessor);
 
 /// Whether its type is that: "VEC3", "SCALAR".
-[[nodiscard]] bool has_type(const nlohmann::json& accessor, const char* type);
+[[nodiscard]] bool has_type(const Json& accessor, const char* type);
 
 /// The accessor that `object` names by `key`; null if there is none.
-[[nodiscard]] const nlohmann::json& accessor_at(const nlohmann::json& document,
-                                                const nlohmann::json& object, const char* key);
+[[nodiscard]] const Json& accessor_at(const Json& document, const Json& object, const char* key);
 
 /// That of the positions of a primitive.
-[[nodiscard]] const nlohmann::json& positions_of(const nlohmann::json& document,
-                                                 const nlohmann::json& primitive);
+[[nodiscard]] const Json& positions_of(const Json& document, const Json& primitive);
 
 }  // namespace boxtree::cooker

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/file_error.h"
 #include "cooker/import/glb.h"
@@ -14,8 +13,6 @@
 #include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
-
-using Json = nlohmann::json;
 
 Result<Json> read_gltf(const SourceFile& source) {
   if (!is_gltf(source.path())) return Json();
@@ -28,15 +25,14 @@ Result<Json> read_gltf(const SourceFile& source) {
 }
 
 std::uint64_t number_at(const Json& object, const char* key, std::uint64_t otherwise) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>()
-                                                              : otherwise;
+  const Json* const found = object.find(key);
+  return found != nullptr && found->is_number_unsigned() ? found->get<std::uint64_t>() : otherwise;
 }
 
 const Json& array_at(const Json& object, const char* key) {
   static const Json kEmpty = Json::array();
-  const auto found = object.find(key);
-  return found != object.end() && found->is_array() ? *found : kEmpty;
+  const Json* const found = object.find(key);
+  return found != nullptr && found->is_array() ? *found : kEmpty;
 }
 
 std::string gltf_fault(const SourceFile& source) {

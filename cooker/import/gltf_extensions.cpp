@@ -7,14 +7,11 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/gltf_document.h"
 
 namespace boxtree::cooker {
 namespace {
-
-using Json = nlohmann::json;
 
 // Extensions of these kinds, whoever defines them, are of what covers faces or lights them.
 constexpr std::array<std::string_view, 3> kKindsWithoutGeometry = {"materials_", "texture_",

@@ -5,15 +5,15 @@
 
 #include <cstddef>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <boxtree/error.h>
+
+#include "cooker/text/json.h"
 
 namespace boxtree::cooker {
 
 /// kImportFailed with the name and a remedy if the document requires an extension other than those
 /// that are read and those that cannot change geometry. The document may hold anything.
-Status check_required_extensions(const nlohmann::json& document);
+Status check_required_extensions(const Json& document);
 
 /// Has the positions and indices of a primitive.
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";

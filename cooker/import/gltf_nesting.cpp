@@ -1,35 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Computes the depth of JSON without recursion, and counts members.
+// Computes the depth of JSON without recursion.
 #include "cooker/import/gltf_nesting.h"
 
 #include <algorithm>
 #include <map>
-#include <optional>
-#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/file_error.h"
 
 namespace boxtree::cooker {
 namespace {
 
-using Json = nlohmann::json;
-
 Error fault(std::string what) {
   return {Errc::kImportFailed, std::move(what)};
 }
 
-struct JsonShape {
-  bool is_too_deep = false;
-  std::uint64_t members = 0;  // of all objects, if it is not too deep
-};
-
-JsonShape shape_of(std::string_view json) {
-  JsonShape shape;
+// Of text that need not be JSON, which assimp may still read.
+bool is_too_deep(std::string_view json) {
   std::uint32_t depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < json.size(); ++i) {
@@ -40,49 +31,27 @@ JsonShape shape_of(std::string_view json) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) {
-        shape.is_too_deep = true;
-        return shape;
-      }
+      if (++depth > kMaxJsonDepth) return true;
     } else if ((c == '}' || c == ']') && depth > 0) {
       --depth;
-    } else if (c == ':') {
-      ++shape.members;
     }
   }
-  return shape;
-}
-
-// Those with a name of their own.
-std::uint64_t count_members(const Json& document) {
-  std::uint64_t count = 0;
-  std::vector<const Json*> values{&document};
-  while (!values.empty()) {
-    const Json& value = *values.back();
-    values.pop_back();
-    if (value.is_object()) count += value.size();
-    for (const Json& each : value) {
-      if (each.is_structured()) values.push_back(&each);
-    }
-  }
-  return count;
+  return false;
 }
 
 // Children of each node. Nodes have numbers in glTF 2 and names in glTF 1. Invalid references are
 // left to the reader to refuse.
 NodeChildren children_of(const Json& nodes) {
   std::map<std::string, std::uint32_t> numbers;
-  if (nodes.is_object()) {
-    for (const auto& [name, node] : nodes.items()) {
-      numbers.emplace(name, static_cast<std::uint32_t>(numbers.size()));
-    }
+  for (const auto& [name, node] : nodes.items()) {
+    numbers.emplace(name, static_cast<std::uint32_t>(numbers.size()));
   }
   NodeChildren children(nodes.size());
   std::uint32_t number = 0;
-  for (const Json& node : nodes) {
+  const auto add = [&](const Json& node) {
     std::vector<std::uint32_t>& of_node = children[number++];
-    const auto listed = node.is_object() ? node.find("children") : node.end();
-    if (listed == node.end() || !listed->is_array()) continue;
+    const Json* const listed = node.find("children");
+    if (listed == nullptr) return;
     for (const Json& child : *listed) {
       if (child.is_number_unsigned() && child.get<std::uint64_t>() < nodes.size()) {
         of_node.push_back(child.get<std::uint32_t>());
@@ -91,66 +60,21 @@ NodeChildren children_of(const Json& nodes) {
         if (found != numbers.end()) of_node.push_back(found->second);
       }
     }
-  }
+  };
+  for (const Json& node : nodes) add(node);
+  for (const auto& [name, node] : nodes.items()) add(node);
   return children;
-}
-
-// Values without effect, up to the first fault.
-struct FaultListener : nlohmann::json_sax<Json> {
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(Json::number_integer_t) override { return true; }
-  bool number_unsigned(Json::number_unsigned_t) override { return true; }
-  bool number_float(Json::number_float_t, const std::string&) override { return true; }
-  bool string(std::string&) override { return true; }
-  bool binary(Json::binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(std::string&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-  bool parse_error(std::size_t position, const std::string&,
-                   const nlohmann::detail::exception&) override {
-    at = position;
-    return false;
-  }
-
-  std::optional<std::size_t> at;  // bytes read, the one at fault included
-};
-
-// Up to the first name that an object has twice.
-struct DuplicateListener : FaultListener {
-  bool start_object(std::size_t) override {
-    names.emplace_back();
-    return true;
-  }
-  bool key(std::string& name) override {
-    if (names.back().insert(name).second) return true;
-    twice = name;
-    return false;
-  }
-  bool end_object() override {
-    names.pop_back();
-    return true;
-  }
-
-  std::vector<std::set<std::string>> names;  // of the objects around
-  std::string twice;
-};
-
-std::string duplicate_in(std::string_view text) {
-  DuplicateListener listener;
-  Json::sax_parse(text, &listener);
-  return listener.twice;
 }
 
 }  // namespace
 
 std::string json_fault(std::string_view text) {
-  FaultListener listener;
-  if (Json::sax_parse(text, &listener) || !listener.at) return {};
-  const std::string_view before = text.substr(0, std::max<std::size_t>(*listener.at, 1) - 1);
-  if (*listener.at > text.size()) {
+  const ParsedJson parsed = parse_json(text, kMaxJsonDepth);
+  if (parsed.fault == ParsedJson::Fault::kNone || parsed.fault == ParsedJson::Fault::kTooDeep) {
+    return {};
+  }
+  const std::string_view before = text.substr(0, std::max<std::size_t>(parsed.byte, 1) - 1);
+  if (parsed.byte > text.size()) {
     return fmt::format("its JSON ends within a value, after {} bytes{}", text.size(), kAsIfCut);
   }
   // JSON itself is ASCII: what is wrong about other bytes, or behind one, is their encoding.
@@ -163,26 +87,20 @@ std::string json_fault(std::string_view text) {
 }
 
 Result<Json> parse_gltf(std::string_view text) {
-  const JsonShape shape = shape_of(text);
-  if (shape.is_too_deep) {
+  if (is_too_deep(text)) {
     return fault(fmt::format("JSON values nest more than {} deep", kMaxJsonDepth));
   }
-  Json document = Json::parse(text, nullptr, false);
-  if (document.is_discarded()) return document;
+  ParsedJson parsed = parse_json(text, kMaxJsonDepth);
+  if (parsed.fault != ParsedJson::Fault::kNone) return Json();
   // Of two members of a name this document has the last, and assimp's the first.
-  if (count_members(document) != shape.members) {
-    return fault(fmt::format("an object of its JSON has two members '{}'", duplicate_in(text)));
+  if (parsed.twice) {
+    return fault(fmt::format("an object of its JSON has two members '{}'", *parsed.twice));
   }
-  const auto nodes = document.is_object() ? document.find("nodes") : document.end();
-  if (nodes == document.end()) return document;
+  const Json* const nodes = parsed.value.find("nodes");
+  if (nodes == nullptr) return std::move(parsed.value);
   const auto at_node = find_nesting_fault(children_of(*nodes));
   if (at_node) return fault(fmt::format("node {}: {}", at_node->node, at_node->what));
-  return document;
-}
-
-Status check_gltf(std::string_view text) {
-  const Result<Json> document = parse_gltf(text);
-  return document ? Status() : document.error();
+  return std::move(parsed.value);
 }
 
 }  // namespace boxtree::cooker

@@ -11,7 +11,6 @@
 
 #include <assimp/scene.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/gltf_accessor.h"
 #include "cooker/import/gltf_document.h"
@@ -19,8 +18,6 @@
 
 namespace boxtree::cooker {
 namespace {
-
-using Json = nlohmann::json;
 
 // How the positions of a primitive are stored: its componentType, and this where it is normalized.
 constexpr std::uint32_t kNormalized = 0x10000;
@@ -31,18 +28,18 @@ std::uint32_t storage_of(const Json& document, const Json& primitive) {
   const GltfComponent* const component = component_of(accessor);
   if (component == nullptr || component->type == GltfComponent::kFloat)
     return GltfComponent::kFloat;
-  const auto normalized = accessor.find("normalized");
-  const bool is_normalized = normalized != accessor.end() && *normalized == true;
+  const Json* const normalized = accessor.find("normalized");
+  const bool is_normalized =
+      normalized != nullptr && normalized->is_boolean() && normalized->get<bool>();
   return component->type | (is_normalized ? kNormalized : 0);
 }
 
 // "VEC2 of SHORT", as the file has it.
 std::string type_of(const Json& accessor) {
-  const auto type = accessor.find("type");
+  const Json* const type = accessor.find("type");
   const GltfComponent* const component = component_of(accessor);
   return fmt::format(
-      "{} of {}",
-      type != accessor.end() && type->is_string() ? type->get<std::string>() : "no type",
+      "{} of {}", type != nullptr && type->is_string() ? type->get<std::string>() : "no type",
       component != nullptr
           ? component->name
           : fmt::format("component type {}", number_at(accessor, "componentType", 0)).c_str());

@@ -11,18 +11,15 @@
 
 namespace boxtree::cooker {
 
-using Json = nlohmann::json;
-
 const Json& element_at(const Json& list, std::uint64_t index) {
   static const Json kNone;
   return index < list.size() ? list[index] : kNone;
 }
 
 std::string name_of_mesh(const Json& mesh, std::size_t number) {
-  const auto name = mesh.find("name");
-  const bool has_name =
-      name != mesh.end() && name->is_string() && !name->get<std::string>().empty();
-  return has_name ? name->get<std::string>() : fmt::format("mesh {}", number);
+  const Json* const name = mesh.find("name");
+  std::string text = name != nullptr && name->is_string() ? name->get<std::string>() : "";
+  return !text.empty() ? text : fmt::format("mesh {}", number);
 }
 
 Result<std::vector<std::uint32_t>> numbers_of_meshes(const Json& document,

@@ -12,7 +12,6 @@
 namespace boxtree::cooker {
 namespace {
 
-using Json = nlohmann::json;
 using Counts = decltype(StatedFaces::counts)::value_type;
 
 Counts counts_of(const Json& document, const Json& primitive) {
@@ -35,8 +34,8 @@ Counts counts_of(const Json& document, const Json& primitive) {
 Json only(const Json& object, std::initializer_list<const char*> keys) {
   Json out = Json::object();
   for (const char* key : keys) {
-    const auto found = object.find(key);
-    if (found != object.end()) out[key] = *found;
+    const Json* const found = object.find(key);
+    if (found != nullptr) out[key] = *found;
   }
   return out;
 }

@@ -7,11 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <boxtree/error.h>
 
 #include "cooker/import/gltf_primitives.h"
+#include "cooker/text/json.h"
 
 struct aiScene;
 
@@ -22,12 +21,12 @@ struct StatedFaces {
   /// Numbers of vertices and faces, of each primitive of each mesh in turn.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> counts;
   PrimitiveNumbers numbers;  ///< each primitive's place in `counts`
-  nlohmann::json nodes;      ///< a document with what numbers_of_meshes() looks at
+  Json nodes;                ///< a document with what numbers_of_meshes() looks at
 };
 
 /// Of a glTF document, which may hold anything. No counts for glTF 1, whose reader keeps bad
 /// numbers for later checks, and for other formats. O(its size).
-[[nodiscard]] StatedFaces stated_faces(const nlohmann::json& document);
+[[nodiscard]] StatedFaces stated_faces(const Json& document);
 
 /// kMeshIndexOutOfRange with the mesh if a scene's counts differ from `stated`.
 Status check_stated_faces(const StatedFaces& stated, const aiScene& scene);

@@ -4,19 +4,15 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <nlohmann/json.hpp>
-
 #include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_extensions.h"
 
 namespace boxtree::cooker {
 namespace {
 
-using Json = nlohmann::json;
-
 bool is_instanced(const Json& node) {
-  const auto extensions = node.find("extensions");
-  return extensions != node.end() && extensions->contains(kInstancing);
+  const Json* const extensions = node.find("extensions");
+  return extensions != nullptr && extensions->contains(kInstancing);
 }
 
 bool is_skinned(const Json& node) {
@@ -27,8 +23,9 @@ bool is_skinned(const Json& node) {
 // read.
 bool has_weights(const Json& mesh_or_node) {
   const Json& weights = array_at(mesh_or_node, "weights");
-  return std::any_of(weights.begin(), weights.end(),
-                     [](const Json& weight) { return weight.is_number() && weight != 0; });
+  return std::any_of(weights.begin(), weights.end(), [](const Json& weight) {
+    return weight.is_number() && weight.get<double>() != 0;
+  });
 }
 
 template <class Test>

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_primitives.h"
@@ -22,8 +21,6 @@
 
 namespace boxtree::cooker {
 namespace {
-
-using Json = nlohmann::json;
 
 Error refusal(std::string_view wanted, const std::string& why) {
   return {Errc::kMeshUnsupported, fmt::format("user data of faces '{}': {}", wanted, why)};
@@ -47,8 +44,8 @@ struct Owner {
 
 const Json& extras_of(const Json& object) {
   static const Json kNone = Json::object();
-  const auto found = object.find("extras");
-  return found != object.end() && found->is_object() ? *found : kNone;
+  const Json* const found = object.find("extras");
+  return found != nullptr && found->is_object() ? *found : kNone;
 }
 
 // The nearest first.
@@ -92,8 +89,8 @@ Result<PrimitiveNumbers> numbers_in_extras(const Json& document, const std::stri
   const auto read = [&](const Json& mesh, std::size_t m, const Json& primitive, std::size_t p) {
     std::uint32_t number = 0;
     for (const Owner& owner : owners_of(document, mesh, primitive)) {
-      const auto value = owner.extras.find(wanted);
-      if (value == owner.extras.end()) continue;
+      const Json* const value = owner.extras.find(wanted);
+      if (value == nullptr) continue;
       has_any = true;
       const std::optional<std::uint32_t> integer = integer_of(*value);
       if (!integer && fault.empty()) {
@@ -116,8 +113,8 @@ Result<PrimitiveNumbers> numbers_in_extras(const Json& document, const std::stri
 }  // namespace
 
 Result<PrimitiveNumbers> numbers_of_primitives(const Json& document, const std::string& wanted) {
-  const auto meshes = document.find("meshes");
-  if (meshes != document.end() && meshes->is_object()) {
+  const Json* const meshes = document.find("meshes");
+  if (meshes != nullptr && meshes->is_object()) {
     return refusal(wanted, "expected glTF 2, found glTF 1");
   }
   if (wanted != kPrimitives) return numbers_in_extras(document, wanted);

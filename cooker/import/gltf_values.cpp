@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/gltf_accessor.h"
 #include "cooker/import/gltf_document.h"
@@ -21,8 +20,6 @@
 namespace boxtree::cooker {
 namespace {
 
-using Json = nlohmann::json;
-
 // Of modes (specification, 5.24.4); the last is that of fans.
 constexpr std::uint64_t kTriangles = 4, kTriangleFan = 6;
 
@@ -31,13 +28,8 @@ std::string shown(const Json& value) {
   constexpr std::size_t kMost = 40;
   if (value.is_object()) return "an object";
   if (value.is_array()) return fmt::format("a list of {}", value.size());
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string text = value.dump(-1, true);
   return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
-}
-
-const Json* member(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found == object.end() ? nullptr : &*found;
 }
 
 // Holds the first fault. Methods return whether there is none yet.
@@ -80,7 +72,7 @@ class ValueChecker {
 
   bool rotation(const Json& node) {
     if (!numbers(node, "rotation", 4)) return false;
-    const Json* const rotation = member(node, "rotation");
+    const Json* const rotation = node.find("rotation");
     if (rotation == nullptr) return true;
     double squared = 0;
     for (const Json& each : *rotation) squared += each.get<double>() * each.get<double>();
@@ -92,7 +84,7 @@ class ValueChecker {
   // Columns, of which each ends with the number of the last row.
   bool matrix(const Json& node) {
     if (!numbers(node, "matrix", 16)) return false;
-    const Json* const matrix = member(node, "matrix");
+    const Json* const matrix = node.find("matrix");
     if (matrix == nullptr) return true;
     for (std::size_t column = 0; column < 4; ++column) {
       const double last = (*matrix)[4 * column + 3].get<double>();
@@ -120,12 +112,12 @@ class ValueChecker {
 
   bool check_primitive(const Json& primitive) {
     if (!is_object(primitive)) return false;
-    const Json* const mode = member(primitive, "mode");
+    const Json* const mode = primitive.find("mode");
     if (mode != nullptr &&
         !(mode->is_number_unsigned() && mode->get<std::uint64_t>() <= kTriangleFan)) {
       return fail("mode", "0 to 6", shown(*mode));
     }
-    const Json* const attributes = member(primitive, "attributes");
+    const Json* const attributes = primitive.find("attributes");
     if (attributes == nullptr || !attributes->is_object()) {
       return fail("attributes", "an object with POSITION",
                   attributes == nullptr ? "none" : shown(*attributes));
@@ -151,7 +143,7 @@ class ValueChecker {
   // Its accessors then have no bufferView, or one that is not read. Others without one are of
   // zeros, as many as they say.
   static bool is_compressed(const Json& primitive) {
-    const Json* const extensions = member(primitive, "extensions");
+    const Json* const extensions = primitive.find("extensions");
     return extensions != nullptr && extensions->contains(kDraco);
   }
 
@@ -187,7 +179,7 @@ class ValueChecker {
     const std::uint64_t size = components * component->bytes;
     const std::uint64_t elements = number_at(accessor, "count", 0);
     if (!check_range(accessor, elements, size)) return false;
-    const Json* const sparse = member(accessor, "sparse");
+    const Json* const sparse = accessor.find("sparse");
     return sparse == nullptr || check_sparse(*sparse, elements, size);
   }
 
@@ -199,8 +191,8 @@ class ValueChecker {
       return fail("count", fmt::format("at most {}, as many as it replaces of", elements),
                   std::to_string(replaced));
     }
-    const Json* const indices = member(sparse, "indices");
-    const Json* const values = member(sparse, "values");
+    const Json* const indices = sparse.find("indices");
+    const Json* const values = sparse.find("values");
     if (indices == nullptr || !indices->is_object()) return fail("indices", "an object", "none");
     if (values == nullptr || !values->is_object()) return fail("values", "an object", "none");
     const GltfComponent* const component = component_of(*indices);
@@ -214,7 +206,7 @@ class ValueChecker {
 
   // Of `elements` of `size` bytes in a bufferView, which has to be in its buffer.
   bool check_range(const Json& object, std::uint64_t elements, std::uint64_t size) {
-    if (member(object, "bufferView") == nullptr) return fail("bufferView", "one", "none");
+    if (object.find("bufferView") == nullptr) return fail("bufferView", "one", "none");
     if (!(index(object, "bufferView", "bufferViews") && count(object, "byteOffset", 0, false)))
       return false;
     const std::string of_object = place_;
@@ -257,13 +249,13 @@ class ValueChecker {
     return value.is_object() || fail("", "an object", shown(value));
   }
   bool is_list(const Json& object, const char* key) {
-    const Json* const list = member(object, key);
+    const Json* const list = object.find(key);
     return list == nullptr || list->is_array() || fail(key, "a list", shown(*list));
   }
 
   // A member that names an element of `list`, if it is there.
   bool index(const Json& object, const char* key, const char* list) {
-    const Json* const number = member(object, key);
+    const Json* const number = object.find(key);
     return number == nullptr || is_index(key, *number, list);
   }
   bool indices(const Json& object, const char* key, const char* list) {
@@ -279,7 +271,7 @@ class ValueChecker {
            fail(key, fmt::format("an index of the {} {}", size, list), shown(number));
   }
   bool numbers(const Json& object, const char* key, std::size_t size) {
-    const Json* const list = member(object, key);
+    const Json* const list = object.find(key);
     if (list == nullptr) return true;
     const std::string expected = fmt::format("{} numbers", size);
     if (!list->is_array() || list->size() != size) return fail(key, expected, shown(*list));
@@ -290,7 +282,7 @@ class ValueChecker {
   }
   // A whole number of `least` or more, if it is there.
   bool count(const Json& object, const char* key, std::uint64_t least, bool is_required) {
-    const Json* const number = member(object, key);
+    const Json* const number = object.find(key);
     if (number == nullptr && !is_required) return true;
     return (number != nullptr && number->is_number_unsigned() &&
             number->get<std::uint64_t>() >= least) ||

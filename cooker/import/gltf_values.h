@@ -3,14 +3,14 @@
 // or out of range, for others, and then places, reads or leaves out what the file does not say.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <boxtree/error.h>
+
+#include "cooker/text/json.h"
 
 namespace boxtree::cooker {
 
 /// kImportFailed with the place, what is expected and what was found. A document of glTF 1, which
 /// has no lists, passes. Time: linear in the document.
-Status check_values(const nlohmann::json& document);
+Status check_values(const Json& document);
 
 }  // namespace boxtree::cooker

@@ -9,12 +9,15 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "cooker/import/glb.h"
+#include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_nesting.h"
+#include "cooker/import/gltf_primitives.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/reorder/reorder.h"
 #include "cooker/system/path.h"
@@ -41,11 +44,6 @@ constexpr std::uint64_t kModeTriangleFan = 6;
 
 constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
 
-std::uint64_t number_at(const Json& object, const char* key, std::uint64_t otherwise) {
-  const Json* const found = object.find(key);
-  return found != nullptr && found->is_number_unsigned() ? found->get<std::uint64_t>() : otherwise;
-}
-
 bool is_array(const Json& object, std::string_view key) {
   const Json* const found = object.find(key);
   return found != nullptr && found->is_array();
@@ -53,8 +51,7 @@ bool is_array(const Json& object, std::string_view key) {
 
 // An object of one of the document's arrays; null if it is not there.
 const Json* object_of(const Json& document, const char* array, std::uint64_t number) {
-  if (!is_array(document, array) || number >= document[array].size()) return nullptr;
-  const Json& object = document[array][number];
+  const Json& object = element_at(array_at(document, array), number);
   return object.is_object() ? &object : nullptr;
 }
 
@@ -155,8 +152,9 @@ class GltfReorder {
       if (rest.size() >= kChunkHeaderBytes) std::memcpy(chunk.data(), rest.data(), sizeof(chunk));
       if (chunk[1] == kBinaryChunk) binary_ = rest.substr(kChunkHeaderBytes, chunk[0]);
     }
-    if (Status status = check_gltf(json); !status) return status;
-    document_ = parse_json(json, kMaxJsonDepth).value;
+    Result<Json> document = parse_gltf(json);
+    if (!document) return document.error();
+    document_ = std::move(*document);
     const Json* const asset = document_.find("asset");
     if (asset == nullptr || !asset->is_object()) return has_changed("it is no glTF");
     const Json* const version = asset->find("version");

@@ -27,8 +27,7 @@ LIBRARIES = {
 }
 # What takes seconds of every source that sees it, and what of the project may include it.
 SLOW_HEADERS = {"CLI/": ("cooker/cli/command_app.h",),
-                "nlohmann/": ("cooker/text/json.cpp", "cooker/import/", "cooker/reorder/gltf_reorder.cpp",
-                              "cooker/cli/peers.cpp")}
+                "nlohmann/": ("cooker/text/json.cpp",)}
 PRINTS = ("iostream", "cstdio", "stdio.h", "print")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 PUBLIC = "boxtree/"

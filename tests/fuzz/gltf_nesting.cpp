@@ -6,18 +6,17 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 #include "cooker/import/gltf_stated_faces.h"
 #include "cooker/import/gltf_user_data.h"
 #include "cooker/import/gltf_values.h"
 #include "cooker/import/import.h"
+#include "cooker/text/json.h"
 #include "tests/fuzz/target.h"
 
 namespace boxtree::fuzz {
 namespace {
 
-void read_user_data(const nlohmann::json& document) {
+void read_user_data(const cooker::Json& document) {
   const std::size_t primitives = cooker::names_of_primitives(document).size();
   for (const std::string& wanted : {std::string("id"), std::string(cooker::kPrimitives)}) {
     const auto numbers = cooker::numbers_of_primitives(document, wanted);

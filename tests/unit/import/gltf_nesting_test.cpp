@@ -5,13 +5,12 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 namespace boxtree::cooker {
 namespace {
 
 std::string fault(const std::string& json) {
-  const Result<nlohmann::json> document = parse_gltf(json);
+  const Result<Json> document = parse_gltf(json);
   return document.ok() ? "" : document.error().detail;
 }
 
@@ -75,7 +74,7 @@ TEST(GltfNesting, NodesAreNotBelowThemselves) {
             "node 1: it is below itself");
 }
 
-// Names in place of numbers; messages count nodes in the order of their names.
+// Names in place of numbers; messages count nodes in the order of the file.
 TEST(GltfNesting, Version1IsLookedAtLikewise) {
   EXPECT_EQ(fault(R"({"nodes":{"a":{"children":["b"]},"b":{"children":["a"]}}})"),
             "node 0: it is below itself");

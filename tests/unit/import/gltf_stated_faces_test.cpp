@@ -3,7 +3,6 @@
 #include "cooker/import/gltf_stated_faces.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 namespace boxtree::cooker {
 namespace {
@@ -11,7 +10,7 @@ namespace {
 using Counts = decltype(StatedFaces::counts);
 
 Counts stated(const char* json) {
-  return stated_faces(nlohmann::json::parse(json, nullptr, false)).counts;
+  return stated_faces(parse_json(json).value).counts;
 }
 
 TEST(GltfStatedFaces, PrimitivesByTheirMode) {

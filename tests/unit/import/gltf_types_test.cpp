@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/gltf_unread.h"
 #include "cooker/import/source_scene.h"
@@ -239,7 +238,7 @@ TEST_F(GltfTypes, SkinsWeightsAndScenesThatAreNotRead) {
   const std::vector<Unread> of_scenes = load("a.gltf", text).report.unread;
   ASSERT_EQ(of_scenes.size(), 1u);
   EXPECT_EQ(of_scenes[0].what, "other scenes");
-  const auto of_text = [](const char* json) { return unread_of_gltf(nlohmann::json::parse(json)); };
+  const auto of_text = [](const char* json) { return unread_of_gltf(parse_json(json).value); };
   const std::vector<Unread> skins = of_text(R"({"nodes":[{"mesh":0,"skin":0},{"skin":0},7]})");
   ASSERT_EQ(skins.size(), 1u);
   EXPECT_EQ(skins[0].what, "skins");
