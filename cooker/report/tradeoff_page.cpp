@@ -247,6 +247,16 @@ PageSection advice_section(const MeshTradeoff& mesh) {
     table.rows.push_back(std::move(row));
   }
   section.tables = {table};
+  const std::string cook_of_mesh =
+      fmt::format("boxtree cook{}{}", import_options(mesh),
+                  mesh.tolerance ? fmt::format(" --tolerance {}", *mesh.tolerance) : "");
+  const auto cooks_own = cooks_choice(mesh, Goal::kBalance);
+  if (cooks_own && *cooks_own != advice->balanced) {
+    section.conclusions.push_back({fmt::format("Unless told a codec, {} takes {}.", cook_of_mesh,
+                                               mesh.points[*cooks_own].name()),
+                                   "It counts nodes and geometry alone, where the balanced choice "
+                                   "above counts whole files."});
+  }
   std::string cooks;
   for (const Goal goal : {Goal::kMemory, Goal::kSpeed, Goal::kBalance}) {
     const auto place = cooks_choice(mesh, goal);
@@ -261,14 +271,13 @@ PageSection advice_section(const MeshTradeoff& mesh) {
       "them; without --strip a file also holds the record of its cook, some 0.3 KB, and the name "
       "of its mesh. Without face "
       "ids, nodes and geometry alone, is the figure \"with geometry\" of boxtree cook. "
-      "Unless told a codec, boxtree cook{}{} chooses by counted work, the same on every machine: "
+      "Unless told a codec, {} chooses by counted work, the same on every machine: "
       "{}. "
       "The choices above go by the {}, by whole files, and by how far a surface "
       "may move, so that they may differ. Only encodings with the same surface, bit for bit, "
       "compete for the fastest. Slowdown: {}, of the {} mean times of rays, boxes ({}), closest "
       "points and contacts ({}).",
-      import_options(mesh), mesh.tolerance ? fmt::format(" --tolerance {}", *mesh.tolerance) : "",
-      cooks, is_by_work ? "modelled times" : "times on this page", kSlowdownMeaning,
+      cook_of_mesh, cooks, is_by_work ? "modelled times" : "times on this page", kSlowdownMeaning,
       is_by_work ? "modelled" : "measured", kBoxMeaning,
       is_by_work ? kShallowMeaning : contacts_meaning(mesh));
   if (is_by_work && mesh.timed) {

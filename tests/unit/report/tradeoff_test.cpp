@@ -435,6 +435,26 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
   EXPECT_FALSE(advise(made));
 }
 
+// Found by a newcomer: the balanced choice is not always what cook takes by itself.
+TEST(Advice, SaysWhatCookTakesWhereThatIsAnother) {
+  const auto says = [](const MeshTradeoff& made) {
+    TradeoffReport report;
+    report.meshes = {made};
+    const std::string name = made.points[cooks_choice(made, Goal::kBalance).value()].name();
+    return to_text(tradeoff_page(report)).find("Unless told a codec, boxtree cook takes " + name +
+                                               ". It counts nodes and geometry alone") !=
+           std::string::npos;
+  };
+  MeshTradeoff made = three_points();
+  for (TradePoint& point : made.points) point.modelled = {100, 100, 100, 100};
+  EXPECT_EQ(made.points[cooks_choice(made, Goal::kBalance).value()].name(), "wide8, grid 24");
+  EXPECT_FALSE(says(made));
+  made.points[0].bytes.nodes = 700;
+  made.points[0].bytes.face_ids = 900;  // which cook does not weigh
+  EXPECT_EQ(made.points[advise(made)->balanced].name(), "wide8, grid 24");
+  EXPECT_TRUE(says(made));
+}
+
 // Found by a newcomer: of two encodings of one size the slower one was the smallest.
 TEST(Advice, OfEqualSizesTheFasterOneIsTheSmallest) {
   MeshTradeoff made = three_points();
