@@ -363,8 +363,15 @@ bool PolygonSplitter::blocks(std::uint32_t other, std::uint32_t corner, bool bor
     };
     return enters(points_[previous_[other]]) || enters(points_[next_[other]]);
   }
-  const int lowest = std::min({orient2d(a, b, p), orient2d(b, c, p), orient2d(c, a, p)});
-  return border_blocks ? lowest >= 0 : lowest > 0;
+  // Many corners lie on the line of one edge and clearly outside of another: exact signs only of
+  // what is not clear.
+  const int clear[3] = {orient2d_filter(a, b, p), orient2d_filter(b, c, p),
+                        orient2d_filter(c, a, p)};
+  if (std::min({clear[0], clear[1], clear[2]}) < 0) return false;
+  const auto is_inside = [&](int sign, const Vector2d& from, const Vector2d& to) {
+    return (sign != 0 ? sign : orient2d_exact(from, to, p)) >= (border_blocks ? 0 : 1);
+  };
+  return is_inside(clear[0], a, b) && is_inside(clear[1], b, c) && is_inside(clear[2], c, a);
 }
 
 void PolygonSplitter::clip(std::uint32_t corner) {

@@ -64,7 +64,7 @@ class PolygonSplitter {
   /// corner-in-ear tests the rest is clipped without tests, which bounds the time.
   std::span<const Triangle> split(std::span<const Eigen::Vector3d> corners);
 
-  /// [2^29] corner-in-ear tests per polygon, about two seconds.
+  /// [2^29] corner-in-ear tests per polygon, two to ten seconds.
   static constexpr std::size_t kMaxTests = std::size_t{1} << 29;
 
  private:

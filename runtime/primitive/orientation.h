@@ -55,16 +55,22 @@ inline constexpr double kOrientUnderflow = 0x1p-860;
   return orient3d_exact(a, b, c, d);
 }
 
-/// Sign of twice the area of a, b, c: positive when they turn counter-clockwise. Exact as orient3d.
-[[nodiscard]] inline int orient2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-                                  const Eigen::Vector2d& c) noexcept {
+/// orient2d where doubles decide it, otherwise 0.
+[[nodiscard]] inline int orient2d_filter(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                                         const Eigen::Vector2d& c) noexcept {
   const double left = (a[0] - c[0]) * (b[1] - c[1]);
   const double right = (a[1] - c[1]) * (b[0] - c[0]);
   const double determinant = left - right;
   const double bound = kOrient2dBound * (std::abs(left) + std::abs(right)) + kOrientUnderflow;
   if (determinant > bound) return 1;
-  if (determinant < -bound) return -1;
-  return orient2d_exact(a, b, c);
+  return determinant < -bound ? -1 : 0;
+}
+
+/// Sign of twice the area of a, b, c: positive when they turn counter-clockwise. Exact as orient3d.
+[[nodiscard]] inline int orient2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                                  const Eigen::Vector2d& c) noexcept {
+  const int sign = orient2d_filter(a, b, c);
+  return sign != 0 ? sign : orient2d_exact(a, b, c);
 }
 
 }  // namespace boxtree
