@@ -89,6 +89,10 @@ struct RayEdges {
 [[nodiscard]] RayEdges exact_ray_edges(const ShearedCorner& a, const ShearedCorner& b,
                                        const ShearedCorner& c) noexcept;
 
+/// The part of the sum of its products from which on an area is that of doubles: its relative error
+/// is then below 2^-43.
+inline constexpr double kClearArea = 0x1p-8;
+
 /// Where the line of the ray intersects the triangle, from either side, at any t (the caller bounds
 /// it); nothing when it misses or the sheared triangle is edge-on. Two triangles that share an edge
 /// or corner, bit for bit, leave no gap between them. t is finite or +-infinity, u and v are in [0,
@@ -98,6 +102,10 @@ struct RayEdges {
 /// through it to within that rounding may hit it. That is required: where such triangles close a
 /// seam, between one long edge and the short ones beside it, they cover the gap that rounding
 /// opens.
+///
+/// Weights are those of the sheared corners to within 2^-42, so the point that they give is as near
+/// to the ray at t, however thin the triangle is seen. A triangle without area would otherwise be
+/// hit at any of its points.
 ///
 /// Why there is no gap. An area is fl(fl(x1 y2) - fl(x2 y1)). Rounding is monotone, so its sign is
 /// exact or it is zero; zeros are computed again in exact arithmetic. So all signs are exact for
@@ -110,13 +118,18 @@ struct RayEdges {
   const ShearedCorner a = ray.sheared(triangle.corner[0]);
   const ShearedCorner b = ray.sheared(triangle.corner[1]);
   const ShearedCorner c = ray.sheared(triangle.corner[2]);
-  RayEdges edges{c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x};
+  const double cb = c.x * b.y, bc = c.y * b.x, ac = a.x * c.y, ca = a.y * c.x, ba = b.x * a.y,
+               ab = b.y * a.x;
+  RayEdges edges{cb - bc, ac - ca, ba - ab};
   if (edges.has_mixed_signs()) return std::nullopt;
-  if (edges.has_zero()) [[unlikely]] {
+  const double magnitude = ((std::abs(cb) + std::abs(bc)) + (std::abs(ac) + std::abs(ca))) +
+                           (std::abs(ba) + std::abs(ab));
+  double area = (edges.opposite0 + edges.opposite1) + edges.opposite2;
+  if (edges.has_zero() || !(std::abs(area) >= kClearArea * magnitude)) [[unlikely]] {
     edges = exact_ray_edges(a, b, c);
     if (edges.has_mixed_signs()) return std::nullopt;
+    area = (edges.opposite0 + edges.opposite1) + edges.opposite2;
   }
-  const double area = (edges.opposite0 + edges.opposite1) + edges.opposite2;
   if (area == 0) return std::nullopt;
   // All signs agree, so each quotient is in [0, 1] and t a mean of the corners' own parameters.
   const double weight0 = edges.opposite0 / area;

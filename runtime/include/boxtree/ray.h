@@ -61,7 +61,8 @@ BOXTREE_API RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryL
 BOXTREE_API RayResult any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
 
 /// The same among the faces that `options` let be hit. Of a face and its copies the first that the
-/// filter accepts. Whether a face is met from behind is decided exactly.
+/// filter accepts. Whether a face is met from behind is decided exactly for the corners as the ray
+/// sees them, which are rounded: as close to edge-on as rounding, either side may be.
 BOXTREE_API RayResult closest_hit(const Tree& tree, const Ray& ray, const FaceOptions& options);
 /// Some hit of those, or nothing.
 BOXTREE_API RayResult any_hit(const Tree& tree, const Ray& ray, const FaceOptions& options);

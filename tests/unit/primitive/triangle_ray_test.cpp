@@ -180,6 +180,38 @@ TEST(TriangleRay, AgreesWithExtendedPrecision) {
   EXPECT_GT(hits, 3000);
 }
 
+// Found by an independent oracle: rays hit faces without area, and such that they see edge-on, at
+// any of their points, also behind the ray's. The point that is hit is where the ray is.
+TEST(TriangleRay, AFaceThatIsNearlyALineIsHitWhereTheRayIs) {
+  Source source{std::mt19937_64(0x11e)};
+  std::uniform_real_distribution<double> share(0, 1);
+  const auto check = [](const Triangle& t, const Eigen::Vector3d& origin,
+                        const Eigen::Vector3d& direction) {
+    const auto hit = intersect_ray_triangle(RayShear(origin, direction), t);
+    if (!hit) return 0;
+    const Eigen::Vector3d point =
+        t.corner[0] + hit->u * (t.corner[1] - t.corner[0]) + hit->v * (t.corner[2] - t.corner[0]);
+    EXPECT_LT((origin + hit->t * direction - point).norm(), 1e-11);
+    return 1;
+  };
+  const Triangle line{{{{3, 4, -7}, {4, 5, -9}, {0, 1, -1}}}};
+  check(line, {1.4386468037501103, 2.6561631531449601, -4.0948099568950704}, {-1, 3, -2});
+  int hits = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector3d on =
+        line.corner[2] + share(source.random) * (line.corner[1] - line.corner[2]);
+    const Eigen::Vector3d direction = source.point();
+    hits += check(line, on - 3 * share(source.random) * direction, direction);
+    const Triangle t{{source.point(), source.point(), source.point()}};
+    // In its plane, but for rounding.
+    const Eigen::Vector3d in_plane = share(source.random) * (t.corner[1] - t.corner[0]) -
+                                     share(source.random) * (t.corner[2] - t.corner[0]);
+    const Eigen::Vector3d inside = (t.corner[0] + t.corner[1] + t.corner[2]) / 3;
+    hits += check(t, inside - 2 * in_plane, in_plane);
+  }
+  EXPECT_GT(hits, 2000);
+}
+
 TEST(TriangleRay, BothSidesAndWindingsAndNegativeParameters) {
   const Triangle front{{{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}};
   const Triangle back{{front.corner[0], front.corner[2], front.corner[1]}};
