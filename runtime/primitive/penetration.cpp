@@ -134,7 +134,7 @@ Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner,
     least.try_across(between);
     least.try_all();
   }
-  if (least.normal.isZero(0)) {
+  if (least.normal.isZero(0) || (least.depth > least.error() && unit_normal({corner}).isZero(0))) {
     // A core along a face without area: any direction across both, of which one may be a place.
     Eigen::Vector3d along = shape.axis[0];
     for (const Eigen::Vector3d& edge : edges_of(corner)) {
