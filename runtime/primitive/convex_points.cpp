@@ -159,13 +159,27 @@ Eigen::Vector3d weights_in(const Corners& triangle, const Eigen::Vector3d& point
     weight[static_cast<Eigen::Index>(i)] = std::max(0.0, n[axis] < 0 ? -area : area);
   }
   const double sum = (weight[0] + weight[1]) + weight[2];
-  if (sum > 0) return weight / sum;
-  // Without area: of the corner that is nearest.
-  std::size_t nearest = 0;
-  for (std::size_t i = 1; i < 3; ++i) {
-    if (squared_length(triangle[i] - at) < squared_length(triangle[nearest] - at)) nearest = i;
+  const auto miss = [&](const Eigen::Vector3d& w) {
+    return squared_length((w[0] * triangle[0] + w[1] * triangle[1]) + w[2] * triangle[2] - at);
+  };
+  Eigen::Vector3d best = sum > 0 ? Eigen::Vector3d(weight / sum) : Eigen::Vector3d::UnitX();
+  double least = miss(best);
+  // Of a triangle with hardly any area, as where corners are one, the point is on an edge.
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const Eigen::Vector3d edge = triangle[j] - triangle[i];
+    const double square = squared_length(edge);
+    if (!(square > 0)) continue;
+    const double along = std::clamp(dot(at - triangle[i], edge) / square, 0.0, 1.0);
+    Eigen::Vector3d on_edge = Eigen::Vector3d::Zero();
+    on_edge[static_cast<Eigen::Index>(i)] = 1 - along;
+    on_edge[static_cast<Eigen::Index>(j)] = along;
+    const double missed = miss(on_edge);
+    if (!(missed < least)) continue;
+    least = missed;
+    best = on_edge;
   }
-  return Eigen::Vector3d::Unit(static_cast<Eigen::Index>(nearest));
+  return best;
 }
 
 CoreDistance hull_distance(std::span<const Eigen::Vector3d> points,

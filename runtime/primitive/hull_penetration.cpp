@@ -17,6 +17,7 @@
 
 #include <boxtree/shape.h>
 
+#include "runtime/primitive/closest_point.h"
 #include "runtime/primitive/convex_points.h"
 #include "runtime/primitive/normal.h"
 #include "runtime/primitive/rounding.h"
@@ -349,6 +350,26 @@ class Difference {
   std::array<std::uint16_t, kMostVertices> begins_, ends_;  // the face whose edge does at a corner
 };
 
+// A point of both, which touch. Closest points that are less than rounding apart may be off by the
+// size of a hull that is much smaller than the triangle: projections on the one and the other, by
+// turns, come nearer to both.
+Eigen::Vector3d point_inside_hull(std::span<const Eigen::Vector3d> points, const Corners& corner,
+                                  double error) noexcept {
+  constexpr int kMostTurns = 64;
+  const CoreDistance at = hull_distance(points, corner);
+  Eigen::Vector3d best = at.core + at.between, tried = best;
+  double least = kUnbounded;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    const CoreDistance off = hull_distance(points, {tried, tried, tried});
+    if (!(off.length < least)) break;
+    least = off.length;
+    best = tried;
+    if (least <= error) break;
+    tried = closest_point_on_triangle(off.core, {corner});
+  }
+  return best;
+}
+
 }  // namespace
 
 Penetration hull_penetration(std::span<const Eigen::Vector3d> points, const Corners& corner,
@@ -368,8 +389,7 @@ Penetration hull_penetration(std::span<const Eigen::Vector3d> points, const Corn
       hull_distance(points, {found.point, found.point, found.point}).lower <= 2 * doubt) {
     return found;
   }
-  const CoreDistance at = hull_distance(points, corner);
-  found.point = at.core + at.between;
+  found.point = point_inside_hull(points, corner, 2 * doubt);
   return found;
 }
 

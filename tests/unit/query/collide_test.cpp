@@ -261,6 +261,72 @@ TEST(CollideWithoutSize, HasANormalAndNoDepth) {
   }
 }
 
+// Found by an independent oracle: where rounding put the closest point beside the center, the way
+// out was along the segment, to its end.
+TEST(CollideOnASegment, IsAcrossIt) {
+  SourceMesh mesh;
+  mesh.name = "segments";
+  mesh.positions.f32 = {0, 0, 0, 4277.992f, 0, 0, 17111.969f, 0, 0, 3, 4, -7, 4, 5, -9, 0, 1, -1};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}, {{3, 4, 5, cooker::kNoCorner}}};
+  std::mt19937_64 random(0x5e6);
+  for (const test::Encoding& encoding : test::all_encodings()) {
+    if (encoding.geometry == GeometryId::kGrid) continue;
+    const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+    for (int i = 0; i < 200; ++i) {
+      const double share = std::uniform_real_distribution<double>(0.01, 0.99)(random);
+      const Eigen::Vector3d along(17111.969f, 0, 0);
+      const Eigen::Vector3d at = share * along;
+      const auto check = [&](const auto& shape, double depth) {
+        std::size_t count = 0;
+        ASSERT_TRUE(collide(cooked.tree, shape, [&](const Contact& contact) {
+          if (contact.face.id != 0) return true;
+          ++count;
+          EXPECT_NEAR(contact.depth, depth, 1e-9);
+          EXPECT_NEAR(contact.normal.x(), 0, 1e-12);
+          EXPECT_NEAR(contact.normal.norm(), 1, 1e-12);
+          return true;
+        }));
+        EXPECT_EQ(count, 1u);
+      };
+      check(Sphere{at, 1}, 1);
+      check(Sphere{at, 0}, 0);
+      check(Capsule{at, at, 1}, 1);
+      check(Capsule{at, at + Eigen::Vector3d(7, 0, 0), 2}, 2);
+    }
+  }
+}
+
+// Found by an independent oracle: the point was 55 times the size of the hull beside it, since of
+// two closest corners that were one its weights were those of the other.
+TEST(CollideWithATinyHull, HasAPointInsideBoth) {
+  SourceMesh mesh;
+  mesh.name = "face";
+  mesh.positions.f32 = {1, 4, 0, 3, 1, 0, 3, 0, 2};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  const test::CookedTree cooked = test::cook_tree(mesh, {CodecId::kWide8, GeometryId::kExact});
+  const Eigen::Vector3d at(2.4999998876273599, 1.0000000192317071, 1.4999999461133791);
+  const std::vector<Eigen::Vector3d> points = {
+      {6.2058636549938111e-07, -3.0204008161183276e-07, -3.7781919322670998e-08},
+      {-3.3607341437441632e-07, -6.1310234316919073e-07, 1.7846581730078167e-07},
+      {7.725043735595934e-08, -2.3817502317115143e-07, 1.4696443250459772e-07},
+      {-5.1563939566965023e-07, 2.7934545265421399e-07, 3.7333265166569574e-07}};
+  std::size_t count = 0;
+  ASSERT_TRUE(collide(cooked.tree, ConvexHull{points, at, {1, 0, 0, 0}}, [&](const Contact& each) {
+    ++count;
+    // Inside of the four faces of the tetrahedron.
+    const Eigen::Vector3d point = each.point - at;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Eigen::Vector3d &a = points[i], &b = points[(i + 1) % 4], &c = points[(i + 2) % 4],
+                            &d = points[(i + 3) % 4];
+      const Eigen::Vector3d normal = (b - a).cross(c - a).normalized();
+      const double inner = normal.dot(d - a);
+      EXPECT_GT(normal.dot(point - a) * (inner > 0 ? 1 : -1), -1e-12);
+    }
+    return true;
+  }));
+  EXPECT_EQ(count, 1u);
+}
+
 std::vector<test::ContactBits> contacts_of(const Tree& tree, const Sphere& sphere,
                                            std::size_t most = SIZE_MAX) {
   std::vector<test::ContactBits> all;
