@@ -479,7 +479,8 @@ static inline bxt_limits bxt_default_limits(void) {
   return limits;
 }
 
-/// What becomes of faces that are met from behind: from where corners are seen clockwise.
+/// What becomes of faces that are met from behind: from where corners are seen clockwise, of an
+/// instance in its own coordinates, so that a pose that mirrors turns nothing over.
 enum {
   BXT_BACK_FACES_HIT = 0,     ///< They are hit like others.
   BXT_BACK_FACES_IGNORE = 1,  ///< They are passed through.
@@ -519,7 +520,8 @@ static inline bxt_face_options bxt_default_face_options(void) {
 }
 
 /// How near to the truth an answer has to be, and what it may cost: [lower, upper] has converged if
-/// upper <= lower * (1 + relative_error) or upper <= lower + absolute_error. NULL: the default.
+/// upper <= lower * (1 + relative_error) or upper <= lower + absolute_error, or where rounding lets
+/// them be no nearer. NULL: the default.
 typedef struct bxt_approximation {
   uint32_t struct_size;   ///< sizeof(bxt_approximation).
   uint32_t reserved;      ///< 0
@@ -761,7 +763,7 @@ typedef struct bxt_contact {
   uint16_t feature_index;  ///< As of bxt_cast_hit.
   bxt_face face;           ///< The face that is touched.
   uint32_t triangle;       ///< 0, or 1 for the second half of a quad.
-  bxt_vec3 point;          ///< On the triangle, inside the shape or on its surface.
+  bxt_vec3 point;          ///< On the triangle, inside the shape or on its surface, to within rounding.
   bxt_vec3 normal;         ///< Unit vector along which the shape leaves the triangle soonest.
   bxt_vec3 face_normal;    ///< Orthogonal to the face, to the side to which the normal points.
   double depth;            ///< How far it has to move along the normal, 0 or more.
@@ -857,7 +859,8 @@ typedef bool (*bxt_box_test)(void* context, const bxt_vec3* min, const bxt_vec3*
 /// Receives one triangle after the other; returns whether to go on.
 typedef bool (*bxt_triangle_visitor)(void* context, const bxt_triangle* triangle,
                                      const bxt_face* face, uint32_t half);
-/// Visits every triangle below boxes that all pass the test, each once. Errors: as of rays.
+/// Visits every triangle below boxes that all pass the test, each once; of faces that are copies of
+/// others none. Errors: as of rays.
 BXT_API bxt_status bxt_tree_traverse(const bxt_tree* tree, bxt_box_test test,
                                      bxt_triangle_visitor visitor, void* context,
                                      const bxt_limits* limits, bxt_error* error);
