@@ -57,18 +57,20 @@ endfunction()
 # An archive `boxtree_NAME`. The project's own targets link these; applications link boxtree::NAME, which
 # runtime/CMakeLists.txt makes of them. In a release build,
 #   SMALL    what is not on the way of a query is compiled for size, and
-#   COMPACT  what takes little of its time without the copies of code that -O3 makes.
+#   COMPACT  what takes little of its time without the copies of code that -O3 makes, and so is
+#   LAST     what shares templates with what decides that time, which has to be compiled for it.
 # Sources that these name and the library does not have are left out. LINK says what the sources need of others,
 # as target_link_libraries does, and PRECOMPILE which headers are parsed once for all of them, where CMAKE_UNITY_BUILD
 # does not make them few. The target property BOXTREE_PARTS lists the targets that compile them, one for each way: g++
 # compiles sources with the optimisations of the headers that are precompiled for them. Of a template that several
-# sources instantiate a program has the copy of the first object in the archive, so the small ones come first: were the
-# others sources of the archive itself, they would be first by make.
+# sources instantiate a program has the copy of the first object in the archive, so these come in the order SMALL,
+# COMPACT, others, LAST: were the others sources of the archive itself, they would be first by make.
 function(boxtree_add_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SMALL;COMPACT;LINK;PRECOMPILE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SMALL;COMPACT;LAST;LINK;PRECOMPILE")
   set(sources ${arg_UNPARSED_ARGUMENTS})
   set(parts)
-  foreach(way IN ITEMS SMALL COMPACT)
+  set(last)
+  foreach(way IN ITEMS SMALL COMPACT LAST)
     set(of_way)
     foreach(source IN LISTS arg_${way})
       if(source IN_LIST sources)
@@ -80,7 +82,11 @@ function(boxtree_add_library name)
       string(TOLOWER boxtree_${name}_${way} part)
       add_library(${part} OBJECT ${of_way})
       target_compile_options(${part} PRIVATE $<$<CONFIG:Release>:$<IF:$<STREQUAL:${way},SMALL>,-Os,-O2>>)
-      list(APPEND parts ${part})
+      if(way STREQUAL LAST)
+        set(last ${part})
+      else()
+        list(APPEND parts ${part})
+      endif()
     endif()
   endforeach()
   if(parts)
@@ -88,6 +94,7 @@ function(boxtree_add_library name)
       add_library(boxtree_${name}_fast OBJECT ${sources})
       list(APPEND parts boxtree_${name}_fast)
     endif()
+    list(APPEND parts ${last})
     add_library(boxtree_${name} STATIC)
     foreach(part IN LISTS parts)
       target_sources(boxtree_${name} PRIVATE $<TARGET_OBJECTS:${part}>)
