@@ -45,7 +45,9 @@ class LeastDepth {
 
   void try_all() noexcept {
     const Corners edge = edges_of(corner_);
-    try_axis(unit_normal({corner_}));
+    const Eigen::Vector3d of_face = unit_normal({corner_});
+    has_area = !of_face.isZero(0);
+    try_axis(of_face);
     for (const Eigen::Vector3d& of_triangle : edge) {
       for (std::uint32_t k = 0; k < shape_.axes; ++k) {
         try_axis(unit_normal({{Eigen::Vector3d::Zero(), of_triangle, shape_.axis[k]}}));
@@ -69,6 +71,7 @@ class LeastDepth {
 
   double depth = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  bool has_area = true;  // the triangle, as try_all() found it
   [[nodiscard]] double error() const noexcept { return error_; }
 
  private:
@@ -134,7 +137,7 @@ Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner,
     least.try_across(between);
     least.try_all();
   }
-  if (least.normal.isZero(0) || (least.depth > least.error() && unit_normal({corner}).isZero(0))) {
+  if (least.normal.isZero(0) || (least.depth > least.error() && !least.has_area)) {
     // A core along a face without area: any direction across both, of which one may be a place.
     Eigen::Vector3d along = shape.axis[0];
     for (const Eigen::Vector3d& edge : edges_of(corner)) {
