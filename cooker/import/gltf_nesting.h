@@ -22,7 +22,7 @@ inline constexpr std::uint32_t kMaxJsonDepth = 256;
 /// members of one name. O(bytes log bytes).
 Result<Json> parse_gltf(std::string_view text);
 
-/// What keeps `text` from being JSON, in words; empty if nothing does. O(bytes).
+/// What keeps `text` from being JSON, in words; empty if nothing does. O(bytes log bytes).
 [[nodiscard]] std::string json_fault(std::string_view text);
 
 }  // namespace boxtree::cooker

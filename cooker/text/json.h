@@ -84,7 +84,7 @@ class Json {
   [[nodiscard]] bool empty() const { return size() == 0; }
 
   /// The member of that name, which is added as null if there is none. Precondition: an object, or
-  /// null, which becomes one. This and find(): O(log members).
+  /// null, which becomes one. find(): O(log members); to add one moves at most as many numbers.
   Json& operator[](std::string_view key);
   /// Precondition: an object that has it.
   const Json& operator[](std::string_view key) const;
