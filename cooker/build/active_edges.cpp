@@ -41,10 +41,10 @@ struct Side {
   bool is_reversed;  // the face goes from the larger vertex to the smaller
 };
 
-class Finder {
+class ActiveEdgesFinder {
  public:
   // `edges`: of each face, those to look at; empty: all.
-  Finder(const MeshView& mesh, double degrees, std::span<const std::uint8_t> edges)
+  ActiveEdgesFinder(const MeshView& mesh, double degrees, std::span<const std::uint8_t> edges)
       : mesh_(mesh),
         edges_(edges),
         angle_(EdgeAngle::of_degrees(degrees)),
@@ -216,12 +216,12 @@ bool bends_away(const EdgeSide& face, const EdgeSide& next, bool is_turned,
 }
 
 ActiveEdges find_active_edges(const MeshView& mesh, double degrees) {
-  return Finder(mesh, degrees, {}).run();
+  return ActiveEdgesFinder(mesh, degrees, {}).run();
 }
 
 ActiveEdges find_active_edges(const MeshView& mesh, double degrees,
                               std::span<const std::uint8_t> edges) {
-  return Finder(mesh, degrees, edges).run();
+  return ActiveEdgesFinder(mesh, degrees, edges).run();
 }
 
 }  // namespace boxtree::cooker

@@ -23,7 +23,7 @@ Error fault(std::string what) {
   return {Errc::kDocumentInvalid, "costs: " + std::move(what)};
 }
 
-std::string member(const Json& row, const char* key) {
+std::string text_member(const Json& row, const char* key) {
   const Json* const found = row.find(key);
   return found != nullptr && found->is_string() ? found->get<std::string>() : std::string();
 }
@@ -51,8 +51,8 @@ Result<StepCost> parse_steps(const Json& row, const std::string& place, const ch
 
 Result<CodecCost> parse_row(const Json& row, std::size_t number) {
   if (!row.is_object()) return fault(fmt::format("row {}: expected an object", number));
-  const std::string codec = member(row, "codec");
-  const std::string geometry = member(row, "geometry");
+  const std::string codec = text_member(row, "codec");
+  const std::string geometry = text_member(row, "geometry");
   const std::optional<CodecId> id = find_codec(codec);
   if (!id) return fault(fmt::format("row {}: unknown codec \"{}\"", number, codec));
   const auto store = std::find_if(kStores.begin(), kStores.end(),
@@ -61,7 +61,7 @@ Result<CodecCost> parse_row(const Json& row, std::size_t number) {
     return fault(
         fmt::format("row {}: geometry \"{}\": expected arrays, exact or grid", number, geometry));
   }
-  const std::string positions = member(row, "positions");
+  const std::string positions = text_member(row, "positions");
   const auto precision = std::find_if(kPrecisions.begin(), kPrecisions.end(),
                                       [&](Precision p) { return precision_name(p) == positions; });
   if (precision == kPrecisions.end()) {

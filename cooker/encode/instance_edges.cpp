@@ -95,10 +95,10 @@ bool holds(const Box<double>& box, const Eigen::Vector3d& p) {
   return true;
 }
 
-class Finder {
+class InstanceEdgesFinder {
  public:
-  Finder(std::span<const EncodedTree> trees, std::span<const MeshArrays> arrays, double degrees,
-         SceneParts& parts)
+  InstanceEdgesFinder(std::span<const EncodedTree> trees, std::span<const MeshArrays> arrays,
+                      double degrees, SceneParts& parts)
       : trees_(trees), arrays_(arrays), degrees_(degrees), parts_(parts) {}
 
   Status run() {
@@ -230,7 +230,7 @@ class Finder {
 
 Status find_instance_edges(std::span<const EncodedTree> trees, std::span<const MeshArrays> arrays,
                            double degrees, SceneParts& parts) {
-  return Finder(trees, arrays, degrees, parts).run();
+  return InstanceEdgesFinder(trees, arrays, degrees, parts).run();
 }
 
 }  // namespace boxtree::cooker

@@ -47,11 +47,11 @@
 namespace boxtree::cooker {
 namespace {
 
-enum class FaceOrder : std::uint8_t { kOfFile, kByMaterial };
+enum class ReadOrder : std::uint8_t { kOfFile, kByMaterial };
 
 // Turns off what assimp's readers add, omit or reorder by default, and work on data other than
 // geometry.
-void configure(Assimp::Importer& importer, FaceOrder order) {
+void configure(Assimp::Importer& importer, ReadOrder order) {
   // Added: a mesh around the bones of a file without meshes.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // Added: faces of a subdivision surface instead of those in the file.
@@ -61,7 +61,7 @@ void configure(Assimp::Importer& importer, FaceOrder order) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_MD5_NO_ANIM_AUTOLOAD, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_SMD_LOAD_ANIMATION_LIST, false);
   // Reordered: faces sorted by material.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_MATERIALS, order == FaceOrder::kByMaterial);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_MATERIALS, order == ReadOrder::kByMaterial);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_SEPARATE_BFCULL, false);
   // Turned: what a Collada file says is up.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
@@ -103,7 +103,7 @@ void undo_unit(aiScene& scene) {
 
 // Records the files read in `use`. Errors do not name the source. No post-processing flags: each
 // may drop, reorder, merge or generate data.
-Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder order,
+Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, ReadOrder order,
                                             SourceUse& use) {
   const CLocaleScope numbers_in_c_locale;
   Assimp::Importer importer;
@@ -159,7 +159,7 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
 // materials, there are none; it has read the geometry before.
 std::vector<MeshMaterials> read_fbx_materials(const SourceFile& source, aiScene& scene) {
   SourceUse read_already;
-  const auto sorted = read_scene(source, FaceOrder::kByMaterial, read_already);
+  const auto sorted = read_scene(source, ReadOrder::kByMaterial, read_already);
   return sorted.ok() ? match_materials(scene, *sorted.value()) : std::vector<MeshMaterials>();
 }
 
@@ -197,10 +197,10 @@ Result<std::uint64_t> try_reading(const SourceFile& source) {
         use.opened = [&size](std::uint64_t bytes) {  // of all files that it refers to
           extend_trial(trial_limits(std::max(*size, bytes)));
         };
-        const auto scene = read_scene(source, FaceOrder::kOfFile, use);
+        const auto scene = read_scene(source, ReadOrder::kOfFile, use);
         if (!scene.ok()) return scene.error();
         if (has_extension(source.path(), "fbx")) {  // once more for its materials
-          static_cast<void>(read_scene(source, FaceOrder::kByMaterial, use));
+          static_cast<void>(read_scene(source, ReadOrder::kByMaterial, use));
         }
         return geometry_hash(*scene.value());
       });
@@ -330,7 +330,7 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
   if (!checks.ok()) return checks.error();
   report.has_open_end = checks->text.has_open_end;
   SourceUse use;
-  auto scene = read_scene(source, FaceOrder::kOfFile, use);
+  auto scene = read_scene(source, ReadOrder::kOfFile, use);
   if (!scene.ok()) return in_file(source.title(), scene.error());
   if (checks->tried_hash && *checks->tried_hash != geometry_hash(*scene.value())) {
     return in_file(source.title(),
@@ -369,7 +369,7 @@ Result<SourceFileList> list_assimp_files(const SourceFile& source, const ImportO
     return checks.error();
   }
   SourceUse use;
-  const auto scene = read_scene(source, FaceOrder::kOfFile, use);
+  const auto scene = read_scene(source, ReadOrder::kOfFile, use);
   if (!scene.ok()) return in_file(source.title(), scene.error());
   const bool is_all = std::all_of(use.present.begin(), use.present.end(), [&](const auto& name) {
     return std::find(use.named.begin(), use.named.end(), name) != use.named.end();

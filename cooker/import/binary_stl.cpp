@@ -18,14 +18,12 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = kStlHeaderBytes;
 constexpr std::size_t kCountOffset = 80;
-constexpr std::size_t kTriangleBytes = 50;
-constexpr std::size_t kCornersOffset = 12;
 constexpr std::size_t kCornerBytes = 12;
 
 // Triangles per block; while some are welded, later ones are prefetched.
 constexpr std::size_t kTrianglesAtOnce = 2048;
 constexpr std::size_t kAhead = 6;
-static_assert(kTrianglesAtOnce * kTriangleBytes <= SourceStream::kBufferBytes);
+static_assert(kTrianglesAtOnce * kStlTriangleBytes <= SourceStream::kBufferBytes);
 
 std::uint32_t load_word(const char* at) {
   std::array<unsigned char, 4> bytes;
@@ -35,14 +33,14 @@ std::uint32_t load_word(const char* at) {
 }
 
 std::uint64_t bytes_of(std::uint32_t triangles) {
-  return kHeaderBytes + std::uint64_t{kTriangleBytes} * triangles;
+  return kHeaderBytes + std::uint64_t{kStlTriangleBytes} * triangles;
 }
 
 template <class T>
 std::array<T, 3> load_corner(const char* triangle, std::size_t corner) {
   std::array<T, 3> position;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const char* const at = triangle + kCornersOffset + kCornerBytes * corner + 4 * axis;
+    const char* const at = triangle + kStlCornersOffset + kCornerBytes * corner + 4 * axis;
     position[axis] = std::bit_cast<float>(load_word(at));
   }
   return position;
@@ -69,12 +67,12 @@ Status read_binary_stl(SourceStream& stream, const std::string& file, StlMesh<T>
   if (Status status = mesh.begin(count); !status.ok()) return status;
   for (std::uint32_t id = 0; id < count;) {
     const auto step = std::min<std::size_t>(count - id, kTrianglesAtOnce);
-    const char* const triangles = stream.take(step * kTriangleBytes);
+    const char* const triangles = stream.take(step * kStlTriangleBytes);
     if (triangles == nullptr) return stream.ended_in(fmt::format("face {} or later", id));
     for (std::size_t i = 0; i < step; ++i, ++id) {
-      const char* const triangle = triangles + kTriangleBytes * i;
+      const char* const triangle = triangles + kStlTriangleBytes * i;
       for (std::size_t corner = 0; i + kAhead < step && corner < 3; ++corner) {
-        mesh.prefetch(load_corner<T>(triangle + kTriangleBytes * kAhead, corner));
+        mesh.prefetch(load_corner<T>(triangle + kStlTriangleBytes * kAhead, corner));
       }
       Status status = mesh.add(
           {load_corner<T>(triangle, 0), load_corner<T>(triangle, 1), load_corner<T>(triangle, 2)});

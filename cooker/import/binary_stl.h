@@ -14,6 +14,10 @@ namespace boxtree::cooker {
 /// What is before the triangles: text of any content, and their count.
 inline constexpr std::size_t kStlHeaderBytes = 84;
 
+/// A triangle: its normal, three corners of 12 bytes each, and 16 bits that mean nothing here.
+inline constexpr std::size_t kStlTriangleBytes = 50;
+inline constexpr std::size_t kStlCornersOffset = 12;
+
 /// Whether the file has the length that the count in its header requires. `stream` is at its start.
 [[nodiscard]] bool is_binary_stl(const SourceStream& stream);
 

@@ -92,7 +92,7 @@ class NodeChecker {
   bool check_placed() {
     std::vector<std::uint32_t> placed{root_}, number_of(nodes_.size(), kNone);
     number_of[root_] = 0;
-    NodeChildren children;
+    NodesBelow children;
     for (std::size_t next = 0; next < placed.size(); ++next) {
       std::vector<std::uint32_t> below = nodes_[placed[next]].children;
       if (!check_parts(nodes_[placed[next]].element, below)) return false;

@@ -41,12 +41,12 @@ bool is_too_deep(std::string_view json) {
 
 // Children of each node. Nodes have numbers in glTF 2 and names in glTF 1. Invalid references are
 // left to the reader to refuse.
-NodeChildren children_of(const Json& nodes) {
+NodesBelow children_of(const Json& nodes) {
   std::map<std::string, std::uint32_t> numbers;
   for (const auto& [name, node] : nodes.items()) {
     numbers.emplace(name, static_cast<std::uint32_t>(numbers.size()));
   }
-  NodeChildren children(nodes.size());
+  NodesBelow children(nodes.size());
   std::uint32_t number = 0;
   const auto add = [&](const Json& node) {
     std::vector<std::uint32_t>& of_node = children[number++];

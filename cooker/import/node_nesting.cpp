@@ -12,7 +12,7 @@ namespace {
 
 // `parents`: of each node how many were not visited. Whoever has one has a parent that has one, so
 // that the way up from there ends in a cycle.
-std::uint32_t node_of_cycle(const NodeChildren& children,
+std::uint32_t node_of_cycle(const NodesBelow& children,
                             const std::vector<std::uint32_t>& parents) {
   const auto is_left = [](std::uint32_t count) { return count > 0; };
   std::vector<std::uint32_t> above(children.size(), 0);
@@ -33,7 +33,7 @@ std::uint32_t node_of_cycle(const NodeChildren& children,
 }  // namespace
 
 // The nodes of a cycle are never reached.
-std::optional<NestingFault> find_nesting_fault(const NodeChildren& children) {
+std::optional<NestingFault> find_nesting_fault(const NodesBelow& children) {
   std::vector<std::uint32_t> parents(children.size(), 0), depth(children.size(), 1);
   std::vector<std::uint64_t> visits(children.size(), 0);
   for (const auto& of_node : children) {

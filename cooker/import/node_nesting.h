@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kMaxNodeDepth = 1024;
 inline constexpr std::uint64_t kMaxRepeatedVisits = std::uint64_t{1} << 18;
 
 /// Numbers of the nodes below each node.
-using NodeChildren = std::vector<std::vector<std::uint32_t>>;
+using NodesBelow = std::vector<std::vector<std::uint32_t>>;
 
 struct NestingFault {
   std::uint32_t node;
@@ -25,6 +25,6 @@ struct NestingFault {
 
 /// A node that is below itself, or is where a limit is passed; empty if there is none. Time: linear
 /// in nodes and children.
-[[nodiscard]] std::optional<NestingFault> find_nesting_fault(const NodeChildren& children);
+[[nodiscard]] std::optional<NestingFault> find_nesting_fault(const NodesBelow& children);
 
 }  // namespace boxtree::cooker

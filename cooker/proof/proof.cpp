@@ -30,7 +30,7 @@ namespace {
 
 // Trees with fewer faces are walked by one thread; others by a task for each subtree some levels
 // down, up to 512 tasks.
-constexpr std::uint32_t kParallelFaces = 16384;
+constexpr std::uint32_t kFacesOfManyTasks = 16384;
 constexpr std::uint32_t kBinaryTaskLevels = 9;
 constexpr std::uint32_t kWideTaskLevels = 3;
 
@@ -75,7 +75,7 @@ class Walk {
        TreeProof& proof)
       : tree_(tree),
         with_geometry_(with_geometry),
-        task_levels_(tree.face_count() < kParallelFaces     ? 0
+        task_levels_(tree.face_count() < kFacesOfManyTasks     ? 0
                      : is_wide(BoundTree::of(tree).codec()) ? kWideTaskLevels
                                                             : kBinaryTaskLevels),
         reached_(reached),

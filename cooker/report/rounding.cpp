@@ -108,7 +108,7 @@ void add_quad(SourceMesh& mesh, const std::array<std::array<float, 3>, 4>& corne
   mesh.faces.push_back({{first, first + 2, first + 3, kNoCorner}});
 }
 
-constexpr std::size_t kSteps = 64;
+constexpr std::size_t kStairSteps = 64;
 constexpr float kTread = 0.125f;
 constexpr float kRise = 0.17f;  // not representable in f16
 constexpr float kStairWidth = 8;
@@ -116,7 +116,7 @@ constexpr float kStairWidth = 8;
 SourceMesh stairs() {
   SourceMesh mesh;
   mesh.name = "stairs";
-  for (std::size_t i = 0; i < kSteps; ++i) {
+  for (std::size_t i = 0; i < kStairSteps; ++i) {
     const float front = kTread * static_cast<float>(i);
     const float back = kTread * static_cast<float>(i + 1);
     const float below = kRise * static_cast<float>(i);
@@ -193,11 +193,11 @@ Result<std::vector<StairFigures>> stair_contact() {
   for (const double depth : {1e-3, 1e-4, 1e-5, 1e-6}) {
     StairFigures row;
     row.depth = depth;
-    row.steps = kSteps;
+    row.steps = kStairSteps;
     const auto count_missed = [&](const EncodedTree& encoded, std::uint64_t& missed) -> Status {
       const Result<Tree> tree = bind_encoded(encoded);
       if (!tree) return tree.error();
-      for (std::size_t i = 0; i < kSteps; ++i) {
+      for (std::size_t i = 0; i < kStairSteps; ++i) {
         Pose pose = Pose::Identity();
         const float top = kRise * static_cast<float>(i + 1);
         pose.translation() = Eigen::Vector3d(kTread * (static_cast<double>(i) + 0.5),

@@ -59,7 +59,7 @@ std::string text_of(const Json& value) {
   return value.dump();
 }
 
-std::string member(const Json& row, const char* name) {
+std::string text_at(const Json& row, const char* name) {
   return row.contains(name) ? text_of(row[name]) : std::string();
 }
 
@@ -227,12 +227,12 @@ Result<IncludedResults> read_results(const std::filesystem::path& path) {
                              path.string(), found)};
   }
   IncludedResults results;
-  results.title = has_rows ? member(document, "title") : "";
+  results.title = has_rows ? text_at(document, "title") : "";
   if (results.title.empty()) results.title = path.stem().string();
-  results.text = has_rows ? member(document, "text") : "";
+  results.text = has_rows ? text_at(document, "text") : "";
   for (const Json& row : rows) {
-    results.rows.push_back({member(row, "id"), member(row, "what"), member(row, "figure"),
-                            member(row, "limit"), member(row, "pass")});
+    results.rows.push_back({text_at(row, "id"), text_at(row, "what"), text_at(row, "figure"),
+                            text_at(row, "limit"), text_at(row, "pass")});
   }
   return results;
 }

@@ -51,7 +51,7 @@ constexpr std::size_t kMostCorners = 255;
 
 // In the temporary file: the number of a face, that of its corners, and these.
 constexpr std::uint64_t kFaceBytes = 8;
-constexpr std::uint64_t kCornerBytes = sizeof(WorldCorner);
+constexpr std::uint64_t kWorldCornerBytes = sizeof(WorldCorner);
 
 // The least and most that are kept of a tile before they are written.
 constexpr std::uint64_t kLeastBuffer = 4096, kMostBuffer = std::uint64_t{1} << 18;
@@ -65,7 +65,7 @@ constexpr std::uint64_t kTileBytesPerTriangle = 44 + 2 * 36 + 48 + 2 * 53;
 static_assert(std::endian::native == std::endian::little);
 
 std::uint64_t stored_bytes(const TileCounts& counts) {
-  return kFaceBytes * counts.faces + kCornerBytes * (counts.triangles + 2 * counts.faces);
+  return kFaceBytes * counts.faces + kWorldCornerBytes * (counts.triangles + 2 * counts.faces);
 }
 
 template <class T>

@@ -59,17 +59,16 @@ std::array<double, 3> in_double(const WorldCorner& corner) {
 
 Result<WorldFaces> read_stl(SourceStream& stream, const std::string& file, BadFaces& bad,
                             const WorldFaceSink& sink) {
-  constexpr std::size_t kTriangleBytes = 50, kNormalBytes = 12;
   static_cast<void>(stream.take(kStlHeaderBytes));
-  const std::uint64_t count = stream.left() / kTriangleBytes;  // is_binary_stl has compared it
+  const std::uint64_t count = stream.left() / kStlTriangleBytes;  // is_binary_stl has compared it
   if (Status status = check_face_count(count, file); !status) return status.error();
   std::array<WorldCorner, 3> corners;
   for (std::uint32_t id = 0; id < count; ++id) {
-    const char* const triangle = stream.take(kTriangleBytes);
+    const char* const triangle = stream.take(kStlTriangleBytes);
     if (triangle == nullptr) return stream.ended_in(fmt::format("face {}", id));
     for (std::size_t i = 0; i < 9; ++i) {
       corners[i / 3][i % 3] =
-          static_cast<float>(load_ply_value(triangle + kNormalBytes + 4 * i, PlyType::kFloat32,
+          static_cast<float>(load_ply_value(triangle + kStlCornersOffset + 4 * i, PlyType::kFloat32,
                                             std::endian::native != std::endian::little));
     }
     const auto found = std::find_if_not(corners.begin(), corners.end(), is_finite);
