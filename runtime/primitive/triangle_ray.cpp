@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rare part of the watertight ray test: areas that round to zero.
+// The rare part of the watertight ray test: areas that round to zero or are small.
 #include "runtime/primitive/triangle_ray.h"
 
 #include <algorithm>
@@ -22,7 +22,8 @@ RayEdges exact_ray_edges(const ShearedCorner& a, const ShearedCorner& b,
   // One scale for all three: only their ratios matter.
   const double scale = safe_scale(std::max(
       {std::abs(a.x), std::abs(a.y), std::abs(b.x), std::abs(b.y), std::abs(c.x), std::abs(c.y)}));
-  return {exact_area(scale, c, b), exact_area(scale, a, c), exact_area(scale, b, a)};
+  const RayEdges edges{exact_area(scale, c, b), exact_area(scale, a, c), exact_area(scale, b, a)};
+  return edges.has_mixed_signs() ? RayEdges{} : edges;
 }
 
 // The axes of the ray are those of space in turn, so that corners that are counterclockwise from

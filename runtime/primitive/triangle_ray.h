@@ -85,7 +85,7 @@ struct RayEdges {
 };
 
 /// The same areas, scaled by a common power of two, with exact signs and a relative error of an
-/// ulp.
+/// ulp; zeros if the signs are mixed.
 [[nodiscard]] RayEdges exact_ray_edges(const ShearedCorner& a, const ShearedCorner& b,
                                        const ShearedCorner& c) noexcept;
 
@@ -127,7 +127,6 @@ inline constexpr double kClearArea = 0x1p-8;
   double area = (edges.opposite0 + edges.opposite1) + edges.opposite2;
   if (edges.has_zero() || !(std::abs(area) >= kClearArea * magnitude)) [[unlikely]] {
     edges = exact_ray_edges(a, b, c);
-    if (edges.has_mixed_signs()) return std::nullopt;
     area = (edges.opposite0 + edges.opposite1) + edges.opposite2;
   }
   if (area == 0) return std::nullopt;
