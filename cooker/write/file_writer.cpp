@@ -49,7 +49,10 @@ class Layout {
     add(SectionKind::kCookRecord, kNoOwner, bytes_of(cook_record_));
     if (scene != nullptr) add_scene(*scene);
     add(SectionKind::kMaterials, kNoOwner, materials.names);
-    if (scene != nullptr) add(SectionKind::kLeftOut, kNoOwner, scene->left_out);
+    if (scene != nullptr) {
+      add(SectionKind::kLeftOut, kNoOwner, scene->left_out);
+      add(SectionKind::kInstanceEdges, kNoOwner, scene->instance_edges);
+    }
     for (std::uint32_t i = 0; i < parts.trees.size(); ++i) {
       const EncodedTree& tree = parts.trees[i];
       add(SectionKind::kNodes, i, tree.nodes.bytes);
@@ -104,7 +107,6 @@ class Layout {
     add(SectionKind::kInstances, kNoOwner, scene.instances);
     add(SectionKind::kPoses, kNoOwner, scene.poses);
     add(SectionKind::kLayers, kNoOwner, scene.layers);
-    add(SectionKind::kInstanceEdges, kNoOwner, scene.instance_edges);
   }
 
   void place() {

@@ -250,6 +250,20 @@ TEST(InstanceEdges, TakeALineForEachFaceThatInstancesShare) {
   EXPECT_EQ(section_bytes(test::cook_scene({tile(1)}, row())), 0u) << "left out";
 }
 
+// Sections of a scene are in the order of their kinds, which the reader holds them to.
+TEST(InstanceEdges, StandBesideMaterialsAndWhatWasLeftOut) {
+  const SourceMesh mesh = tile(1);
+  SceneParts parts = row();
+  parts.materials = {"stone"};
+  parts.tree_materials.push_back({{}, std::vector<std::uint32_t>(mesh.faces.size(), 0)});
+  parts.left_out.push_back({Part::kNames, 0xffffffffu, 3, "names = false"});
+  const CookedScene cooked =
+      test::cook_scene({mesh}, parts, {CodecId::kWide8}, with_active_edges());
+  EXPECT_GT(section_bytes(cooked), 0u);
+  const Scene scene = require(Scene::bind(cooked.file));
+  EXPECT_EQ(scene.material_name(0), "stone");
+}
+
 TEST(InstanceEdges, OfCopiesAreThoseOfTheirOriginals) {
   SourceMesh twice = tile(1);
   const std::size_t count = twice.faces.size();
