@@ -22,13 +22,38 @@ TrianglePart part_of_face(const CastCandidate& found, TrianglePart part) noexcep
   return part;
 }
 
+namespace {
+
+// The active edges of a triangle of the face that was found; both are in tree space.
+std::uint32_t active_of(const BoundTree& tree, const CastCandidate& found, const Triangle& triangle,
+                        std::uint32_t half) noexcept {
+  return active_edges_of(tree.active_edges(), found.original, triangle) &
+         ~found.inactive.of_triangle(found.original, half);
+}
+
+// The edges of a triangle that end at corner `i`.
+std::uint32_t edges_at(std::uint32_t i) noexcept {
+  return 1u << i | 1u << (i + 2) % 3;
+}
+
+}  // namespace
+
 bool is_active(const BoundTree& tree, const CastCandidate& found,
                const TrianglePart& part) noexcept {
   if (part.feature == Feature::kFace || !tree.active_edges()) return true;
-  std::uint32_t edges = 1u << part.index;
-  if (part.feature == Feature::kVertex) edges |= 1u << (part.index + 2) % 3;
-  const std::uint32_t of_tree = active_edges_of(tree.active_edges(), found.original, found.in_tree);
-  return (of_tree & ~found.inactive.of_triangle(found.original, found.half) & edges) != 0;
+  const std::uint32_t active = active_of(tree, found, found.in_tree, found.half);
+  if (part.feature == Feature::kEdge) return (active & 1u << part.index) != 0;
+  if ((active & edges_at(part.index)) != 0) return true;
+  // Where both triangles of a quad meet, one edge at the vertex is of the other one.
+  TriangleBatch face;
+  if (tree.leaves().read(found.original, 1, face) != Errc::kOk || face.count < 2) return false;
+  const std::uint32_t other_half = 1 - found.half;
+  const Triangle other = face.triangle(other_half);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    if (other.corner[i] != found.in_tree.corner[part.index]) continue;
+    if ((active_of(tree, found, other, other_half) & edges_at(i)) != 0) return true;
+  }
+  return false;
 }
 
 Eigen::Vector3d face_normal(const Triangle& triangle, const Eigen::Vector3d& normal) noexcept {

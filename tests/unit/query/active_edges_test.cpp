@@ -197,6 +197,31 @@ TEST(ActiveEdges, HitsAndContactsNameTheFeatureAndWhetherItIsActive) {
   EXPECT_EQ(seen.size(), 4u);  // a face is always active, and all vertices are on a boundary
 }
 
+// A quad's corner on its diagonal has an edge of each of its triangles: both say the same of it.
+TEST(ActiveEdges, ACornerOfAQuadIsActiveByEitherOfItsTriangles) {
+  SourceMesh mesh;
+  mesh.name = "quad and triangle";
+  mesh.positions.f32 = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 0, 0, -1, 1, 0};
+  // The quad goes on beyond its edge at x = 0, so of its corner 0 the edge to (1, 0, 0) alone is
+  // active, which is the first triangle's, and of corner 3 the edge to (1, 1, 0), the second one's.
+  mesh.faces = {{{0, 1, 2, 3}}, {{4, 0, 3, 5}}};
+  cooker::CookOptions options = with_active_edges();
+  const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide8, options);
+  for (const Eigen::Vector3d& center : {Eigen::Vector3d(0, -0.3, 0.3), Eigen::Vector3d(0, 1.3, 0.3),
+                                        Eigen::Vector3d(1.2, 1.2, 0.3)}) {
+    int vertices = 0;
+    const auto look = [&](const Contact& contact) {
+      EXPECT_EQ(contact.feature, Feature::kVertex);
+      EXPECT_TRUE(contact.is_active)
+          << center.transpose() << " face " << contact.face.id << " half " << contact.triangle;
+      ++vertices;
+      return true;
+    };
+    ASSERT_TRUE(collide(cooked.tree, Sphere{center, 0.5}, look).ok());
+    EXPECT_GE(vertices, 2);
+  }
+}
+
 TEST(ActiveEdges, TheRidgeOfARoofKeepsItsNormalAndAFlatEdgeDoesNot) {
   const test::CookedTree cooked = test::cook_tree(roof(), CodecId::kWide4, with_active_edges());
   const Motion down{{0, 0, -1}, 10};

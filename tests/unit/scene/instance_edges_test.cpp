@@ -167,9 +167,22 @@ TEST(InstanceEdges, OfHitsAndContactsAreThoseOfTheInstance) {
       const std::uint32_t here = require(active_edges(scene, face, hit.triangle));
       const Tree& tree = scene.trees()[require(scene.info(hit.instance)).tree];
       const std::uint32_t of_tree = require(active_edges(tree, hit.face, hit.triangle));
-      std::uint32_t bits = 1u << hit.feature_index;
-      if (hit.feature == Feature::kVertex) bits |= 1u << (hit.feature_index + 2u) % 3;
-      EXPECT_EQ(hit.is_active, hit.feature == Feature::kFace || (here & bits) != 0);
+      const auto edges_at = [](std::uint32_t corner) {
+        return 1u << corner | 1u << (corner + 2) % 3;
+      };
+      const bool is_vertex = hit.feature == Feature::kVertex;
+      const std::uint32_t bits = is_vertex ? edges_at(hit.feature_index) : 1u << hit.feature_index;
+      bool is_active = hit.feature == Feature::kFace || (here & bits) != 0;
+      // Corners 0 and 2 of a quad are in both its triangles, (0, 1, 2) and (0, 2, 3).
+      const std::uint32_t number = require(scene.info(hit.instance)).tree;
+      const std::uint32_t of_quad = hit.triangle == 0 ? hit.feature_index : 2 * hit.feature_index;
+      if (is_vertex && cooked.meshes[number].faces[hit.face.id].is_quad() && of_quad % 2 == 0 &&
+          of_quad <= 2) {
+        const std::uint32_t other = 1 - hit.triangle;
+        is_active = is_active || (require(active_edges(scene, face, other)) &
+                                  edges_at(other == 0 ? of_quad : of_quad / 2)) != 0;
+      }
+      EXPECT_EQ(hit.is_active, is_active);
       edges += hit.feature != Feature::kFace ? 1 : 0;
       inactive_borders += !hit.is_active && (of_tree & bits) != 0 ? 1 : 0;
     };
