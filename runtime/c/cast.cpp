@@ -3,6 +3,7 @@
 #include <boxtree_c.h>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include <boxtree/boxtree.h>
 
@@ -182,6 +183,7 @@ bxt_status bxt_merge_contacts(bxt_contact* contacts, size_t count, double distan
         const bxt_contact& contact = elements[i];
         return MergedContact{to_cpp(contact.point), to_cpp(contact.normal), contact.depth};
       },
+      [&](std::size_t i) { elements[i].depth = std::numeric_limits<double>::quiet_NaN(); },
       [&](std::size_t from, std::size_t to) { elements.move(from, to); });
   return BXT_OK;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include <boxtree/collide.h>
@@ -47,24 +48,43 @@ struct MergedContact {
 };
 
 /// merge_contacts() for `count` contacts of any kind: `read(i)` returns the MergedContact of one,
-/// `move(from, to)` copies one to the place of another.
-template <class Read, class Move>
+/// `drop(i)` makes its depth NaN, and `move(from, to)` copies one to the place of another.
+///
+/// The deepest contact is kept, and drops all that are alike; then the deepest of those that are
+/// left, and so on. So none that is kept is like another, and each that is dropped is like one that
+/// is kept and no less deep.
+template <class Read, class Drop, class Move>
 [[nodiscard]] std::size_t merge(std::size_t count, double distance, double cosine, const Read& read,
-                                const Move& move) {
+                                const Drop& drop, const Move& move) {
   const auto is_same = [&](const MergedContact& a, const MergedContact& b) {
     const Eigen::Vector3d between = a.point - b.point;
     return std::sqrt(squared_length(between)) <= distance && dot(a.normal, b.normal) >= cosine;
   };
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const MergedContact next = read(i);
-    std::size_t same = 0;
-    while (same < kept && !is_same(read(same), next)) ++same;
-    if (same == kept) {
-      move(i, kept++);
-    } else if (next.depth > read(same).depth) {
-      move(i, same);
+  // Those kept so far are all that come before (last_depth, last), by depth and then by place.
+  double last_depth = std::numeric_limits<double>::infinity();
+  std::size_t last = 0;
+  for (bool is_first = true;; is_first = false) {  // each turn keeps one
+    std::size_t deepest = count;
+    double depth = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double of_i = read(i).depth;
+      const bool is_left =
+          is_first ? !std::isnan(of_i) : of_i < last_depth || (of_i == last_depth && i > last);
+      if (!is_left || (deepest != count && !(of_i > depth))) continue;
+      deepest = i;
+      depth = of_i;
     }
+    if (deepest == count) break;
+    const MergedContact best = read(deepest);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i != deepest && is_same(read(i), best)) drop(i);
+    }
+    last_depth = depth;
+    last = deepest;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!std::isnan(read(i).depth)) move(i, kept++);
   }
   return kept;
 }
@@ -77,6 +97,7 @@ template <class AnyContact>
       [&](std::size_t i) {
         return MergedContact{contacts[i].point, contacts[i].normal, contacts[i].depth};
       },
+      [&](std::size_t i) { contacts[i].depth = std::numeric_limits<double>::quiet_NaN(); },
       [&](std::size_t from, std::size_t to) { contacts[to] = contacts[from]; });
 }
 

@@ -85,9 +85,11 @@ BOXTREE_API Result<Visit> overlap_convex_hull(const Tree& tree, const ConvexHull
 #endif
 
 /// Of contacts of one shape, keeps one of those that neighbouring triangles report of the same
-/// point: within `distance` of each other, with normals whose cosine is at least `cosine`; the
-/// deepest one, of equal depths the first. Moves those that are kept to the front, in their order,
-/// and returns how many. Quadratic in their number. Never allocates.
+/// point: within `distance` of each other, with normals whose cosine is at least `cosine`. Keeps
+/// the deepest one, of equal depths the first, then the deepest of those that are unlike it, and so
+/// on: each that is left out is like one that is kept and no less deep. Moves those that are kept
+/// to the front, in their order, and returns how many; what is behind them is unspecified.
+/// Quadratic in their number. Never allocates.
 [[nodiscard]] BOXTREE_API std::size_t merge_contacts(std::span<Contact> contacts, double distance,
                                                      double cosine = 0.999);
 

@@ -508,6 +508,51 @@ TEST(MergeContacts, NeighboursOfOnePointBecomeTheDeepest) {
   EXPECT_EQ(merge_contacts(std::span<Contact>(), 1), 0u);
 }
 
+// Those that are kept are in their order; none is like another; each that is left out is like one
+// that is kept and no less deep. Contacts at x of depths.
+TEST(MergeContacts, TheDeepestOfThoseLeftIsKept) {
+  using Places = std::vector<std::pair<double, double>>;  // x, depth
+  const auto merged = [](const Places& places) {
+    std::vector<Contact> contacts;
+    for (const auto& [x, depth] : places) {
+      contacts.emplace_back();
+      contacts.back().point = {x, 0, 0};
+      contacts.back().normal = {0, 0, 1};
+      contacts.back().depth = depth;
+    }
+    contacts.resize(merge_contacts(contacts, 1));
+    Places kept;
+    for (const Contact& contact : contacts) kept.emplace_back(contact.point[0], contact.depth);
+    return kept;
+  };
+  EXPECT_EQ(merged({{0, 1}, {10, 1}, {0, 2}}), (Places{{10, 1}, {0, 2}}));
+  EXPECT_EQ(merged({{0, 1}, {1.5, 1}, {0.8, 2}}), (Places{{0.8, 2}}));
+  EXPECT_EQ(merged({{0, 1}, {0.9, 0.5}, {-0.9, 2}}), (Places{{0.9, 0.5}, {-0.9, 2}}));
+  EXPECT_EQ(merged({{0, 0}, {0.5, 0}, {2, 0}, {2.5, 0}}), (Places{{0, 0}, {2, 0}}));
+
+  std::mt19937 random(4);
+  for (int turn = 0; turn < 200; ++turn) {
+    Places all;
+    for (int i = 0; i < 20; ++i) {
+      all.emplace_back(static_cast<double>(random() % 24) / 2, static_cast<double>(random() % 4));
+    }
+    Places expected;
+    for (std::size_t i = 0; i < all.size(); ++i) expected.emplace_back(all[i].second, -double(i));
+    std::sort(expected.rbegin(), expected.rend());
+    std::set<std::size_t> kept;
+    for (const auto& [depth, place] : expected) {
+      const auto i = static_cast<std::size_t>(-place);
+      const auto is_like_i = [&](std::size_t k) {
+        return std::abs(all[k].first - all[i].first) <= 1;
+      };
+      if (std::none_of(kept.begin(), kept.end(), is_like_i)) kept.insert(i);
+    }
+    Places of_kept;
+    for (const std::size_t i : kept) of_kept.push_back(all[i]);
+    EXPECT_EQ(merged(all), of_kept);
+  }
+}
+
 TEST(CollideErrors, NameTheField) {
   const test::CookedTree cooked = test::cook_tree(test::sphere(8, 8), CodecId::kWide8);
   const auto none = [](const Contact&) { return true; };
