@@ -48,14 +48,21 @@ class Difference {
   // Grows until the nearest face, of those whose normal is against a direction if one is given, is
   // one of the whole difference.
   void grow(const Eigen::Vector3d* against) noexcept {
-    while (true) {  // each step adds a corner, for which there is limited room
-      const std::size_t nearest = nearest_face(against);
-      if (nearest == count_) return;
-      const Face& face = faces_[nearest];
+    for (std::size_t f = 0; f < count_; ++f) faces_[f].is_done = false;
+    // Each step adds a corner, for which there is limited room, or is the last one of a face. A
+    // face that is not against the direction grows, too: what is behind it may be against it.
+    while (true) {
+      const std::size_t nearest = nearest_face();
+      if (nearest == count_) break;
+      Face& face = faces_[nearest];
+      const bool counts = is_against(face.normal, against);
       const Vertex beyond = farthest(face.normal);
       const double reach = dot(face.normal, beyond.at);
-      consider(face.normal, nearest);
-      if (reach - face.offset <= error_ || !add(nearest, beyond)) break;
+      if (counts) consider(face.normal, nearest);
+      const bool is_whole = reach - face.offset <= error_ || !add(nearest, beyond);
+      if (!is_whole) continue;
+      if (counts) break;
+      faces_[nearest].is_done = true;  // one of the difference that does not count
     }
     // A flat difference is left across its plane, not by what it was thickened by.
     for (std::uint32_t k = 0; k < thin_; ++k) {
@@ -91,6 +98,7 @@ class Difference {
     std::array<std::uint16_t, 3> vertex;
     std::array<std::uint16_t, 3> next;  // across the edge from vertex i on
     bool is_visible;                    // from the corner that is added
+    bool is_done;                       // a face of the whole difference
   };
   // From the border of what is visible: an edge, and the face on its other side.
   struct BorderEdge {
@@ -239,14 +247,15 @@ class Difference {
     face.normal = unit_normal({at});
     face.offset = face.normal.isZero(0) ? kUnbounded : dot(face.normal, at[0]);
     face.is_visible = false;
+    face.is_done = false;
   }
 
   // count_ if there is none.
-  [[nodiscard]] std::size_t nearest_face(const Eigen::Vector3d* against) const noexcept {
+  [[nodiscard]] std::size_t nearest_face() const noexcept {
     std::size_t nearest = count_;
     double least = kUnbounded;
     for (std::size_t f = 0; f < count_; ++f) {
-      if (!(faces_[f].offset < least) || !is_against(faces_[f].normal, against)) continue;
+      if (!(faces_[f].offset < least) || faces_[f].is_done) continue;
       least = faces_[f].offset;
       nearest = f;
     }
@@ -350,9 +359,35 @@ class Difference {
   std::array<std::uint16_t, kMostVertices> begins_, ends_;  // the face whose edge does at a corner
 };
 
+// Of the points where lines between the hull's points meet the triangle's plane, one that is in the
+// triangle to within `error`, or else the nearest to it: there, on the triangle. False if the hull
+// is on one side, or the triangle has no plane. Quadratic in the points, but called for few
+// contacts.
+bool plane_crossing(std::span<const Eigen::Vector3d> points, const Corners& corner, double error,
+                    Eigen::Vector3d& crossing) noexcept {
+  const Eigen::Vector3d n = unit_normal({corner});
+  std::array<double, kMaxHullPoints> height;
+  for (std::size_t i = 0; i < points.size(); ++i) height[i] = dot(n, points[i] - corner[0]);
+  double least = kUnbounded;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (!(height[i] < 0 && height[j] > 0)) continue;
+      const Eigen::Vector3d met =
+          points[i] + height[i] / (height[i] - height[j]) * (points[j] - points[i]);
+      const Eigen::Vector3d on_triangle = closest_point_on_triangle(met, {corner});
+      const double off = squared_length(on_triangle - met);
+      if (!(off < least)) continue;
+      least = off;
+      crossing = on_triangle;
+      if (least <= error * error) return true;
+    }
+  }
+  return least < kUnbounded;
+}
+
 // A point of both, which touch. Closest points that are less than rounding apart may be off by the
 // size of a hull that is much smaller than the triangle: projections on the one and the other, by
-// turns, come nearer to both.
+// turns, come nearer to both; where both are nearly in one plane, too slowly.
 Eigen::Vector3d point_inside_hull(std::span<const Eigen::Vector3d> points, const Corners& corner,
                                   double error) noexcept {
   constexpr int kMostTurns = 64;
@@ -364,8 +399,12 @@ Eigen::Vector3d point_inside_hull(std::span<const Eigen::Vector3d> points, const
     if (!(off.length < least)) break;
     least = off.length;
     best = tried;
-    if (least <= error) break;
+    if (least <= error) return best;
     tried = closest_point_on_triangle(off.core, {corner});
+  }
+  if (plane_crossing(points, corner, error, tried) &&
+      hull_distance(points, {tried, tried, tried}).length < least) {
+    return tried;
   }
   return best;
 }

@@ -33,6 +33,7 @@ using test::long_triangle;
 using test::LongShape;
 using test::LongTriangle;
 using test::LongVector;
+using test::require;
 using test::Surface;
 
 using test::kInfinity;
@@ -519,6 +520,54 @@ TEST(CastIntoAVertex, TouchesItFirst) {
     EXPECT_NEAR((hit->point - Eigen::Vector3d(0, 0, 1)).norm(), 0, 1e-13);
     EXPECT_NEAR((hit->normal - Eigen::Vector3d(0, 0, 1)).norm(), 0, 1e-13);
   }
+}
+
+// The normal is one along which the hull is beyond the triangle when they touch, whatever faces of
+// their difference look along the motion; the feature is where the point lies.
+TEST(CastHull, TheNormalPartsItFromTheTriangleThatItTouches) {
+  std::mt19937 random(4);
+  const auto integer = [&](int most) {
+    return static_cast<int>(random() % (2u * most + 1)) - most;
+  };
+  const auto vector = [&](int most) {
+    const int x = integer(most), y = integer(most), z = integer(most);
+    return Eigen::Vector3d(x, y, z);
+  };
+  int touched = 0;
+  for (int turn = 0; turn < 60; ++turn) {
+    SourceMesh mesh;
+    mesh.name = "triangle";
+    for (int i = 0; i < 9; ++i) mesh.positions.f32.push_back(static_cast<float>(integer(2)));
+    mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+    const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide8);
+    const Triangle triangle = require(cooked.tree.triangle({0, 0}, 0));
+    for (int i = 0; i < 200; ++i) {
+      std::vector<Eigen::Vector3d> points(2 + random() % 5);
+      for (Eigen::Vector3d& point : points) point = vector(2);
+      ConvexHull hull;
+      hull.points = points;
+      hull.position = vector(4);
+      Motion motion{vector(4)};
+      if (motion.direction.isZero(0)) continue;
+      const CastResult hit = cast_closest(cooked.tree, hull, motion);
+      if (!hit || hit->initially_touching) continue;
+      ++touched;
+      double highest = -kInfinity, lowest = kInfinity;
+      for (const Eigen::Vector3d& corner : triangle.corner) {
+        highest = std::max(highest, hit->normal.dot(corner));
+      }
+      for (const Eigen::Vector3d& point : points) {
+        lowest =
+            std::min(lowest, hit->normal.dot(point + hull.position + hit->t * motion.direction));
+      }
+      EXPECT_LE(highest - lowest, 1e-9) << turn << " " << i;
+      EXPECT_LE(hit->normal.dot(motion.direction), 0);
+      if (hit->feature == Feature::kFace && !is_degenerate(triangle)) {
+        EXPECT_NEAR(hit->normal.dot(hit->face_normal), 1, 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(touched, 300);
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, CastCases, testing::ValuesIn(test::all_encodings()),

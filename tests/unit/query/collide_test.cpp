@@ -490,6 +490,48 @@ TEST(CastBesideAFace, OfATinyCapsuleDoesNotTouchAtOnce) {
   }
 }
 
+// Where a small flat hull is nearly in the plane of a triangle, projections from the one to the
+// other hardly move: the point was up to a hundredth of its size beside it.
+TEST(CollideHull, PointsOfSmallFlatHullsLieInThem) {
+  SourceMesh mesh;
+  mesh.name = "triangle";
+  mesh.positions.f32 = {3, 4, 0, 0, 2, 2, 4, 4, 2};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide8);
+  const Triangle triangle = test::require(cooked.tree.triangle({0, 0}, 0));
+  const Eigen::Vector3d e1 = triangle.corner[1] - triangle.corner[0];
+  const Eigen::Vector3d e2 = triangle.corner[2] - triangle.corner[0];
+  const Eigen::Vector3d n = e1.cross(e2).normalized(), u = e1.normalized(), v = n.cross(u);
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> unit(0, 1), both(-1, 1);
+  int touching = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double angle = std::pow(10, -6 * unit(random)),
+                 size = std::pow(10, -2 - 5 * unit(random));
+    const Eigen::Vector3d across = std::cos(angle) * v + std::sin(angle) * n;
+    std::array<Eigen::Vector3d, 3> points;
+    for (Eigen::Vector3d& point : points) {
+      point = size * (both(random) * u + both(random) * across);
+    }
+    ConvexHull hull;
+    hull.points = points;
+    hull.position =
+        triangle.corner[0] + (0.2 + 0.3 * unit(random)) * e1 + (0.2 + 0.3 * unit(random)) * e2;
+    test::LongTriangle placed;
+    for (std::size_t c = 0; c < 3; ++c) {
+      placed[c] = points[c].cast<long double>() + hull.position.cast<long double>();
+    }
+    static_cast<void>(test::require(collide(cooked.tree, hull, [&](const Contact& contact) {
+      const test::LongVector p = contact.point.cast<long double>();
+      EXPECT_LE(test::distance_in_extended_precision({p, p, p}, placed), 4 * 0x1p-46L)
+          << i << " angle " << angle << " size " << size;
+      ++touching;
+      return true;
+    })));
+  }
+  EXPECT_GT(touching, 1000);
+}
+
 TEST(MergeContacts, NeighboursOfOnePointBecomeTheDeepest) {
   const auto contact = [](double x, const Eigen::Vector3d& normal, double depth) {
     Contact c;
