@@ -50,7 +50,12 @@ class TouchingTriangles {
   void share() noexcept {
     cut(first_, second_);
     cut(second_, first_);
-    if (count_ == 0) {  // too thin to have planes
+    if (count_ ==
+        0) {  // too thin to have planes: segments along each other share some of their ends
+      for (const Eigen::Vector3d& corner : first_) keep(corner);
+      for (const Eigen::Vector3d& corner : second_) keep(corner);
+    }
+    if (count_ == 0) {
       const TriangleDistance nearest = triangle_distance({first_}, {second_});
       points_[count_++] = (nearest.first + nearest.second) / 2;
     }
@@ -90,7 +95,10 @@ class TouchingTriangles {
         const double of_a = inside(a), of_b = inside(b);
         if (of_a >= 0 && left < kMost) kept[left++] = a;
         if ((of_a >= 0) != (of_b >= 0) && left < kMost) {
-          kept[left++] = a + (of_a / (of_a - of_b)) * (b - a);
+          // Where the edge itself is met, not what it was widened to, from which a sharp angle
+          // leads far.
+          const double t = (of_a - slack) / (of_a - of_b);
+          kept[left++] = a + std::clamp(t, 0.0, 1.0) * (b - a);
         }
       }
       std::copy_n(kept.begin(), left, polygon.begin());

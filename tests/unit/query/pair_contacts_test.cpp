@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where triangles of two trees touch, against extended precision.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <set>
@@ -232,6 +233,89 @@ TEST(PairContact, OfTrianglesWithoutAreaIsAPointOfBoth) {
   EXPECT_NEAR(along.normal.norm(), 1, 1e-12);
   EXPECT_NEAR(along.normal.x(), 0, 1e-12);
   EXPECT_EQ(along.depth, 0);
+  EXPECT_NEAR((along.end - along.start).norm(), 1, 1e-12);
+  const PairContact with_itself = only_contact(line, line);
+  EXPECT_NEAR((with_itself.end - with_itself.start).norm(), 2, 1e-12);
+}
+
+// Ends were lost where an edge is met at a sharp angle.
+TEST(PairContact, InOnePlaneHasTheEndsThatAreFarthestApart) {
+  const SourceMesh first = one_triangle({0.5, 1, 2.5, 0.5, 1, -1.5, 0.5, 0, 2.5});
+  const SourceMesh second = one_triangle({0.5, 3.5, -0.25, 0.5, -0.5, 0, 0.5, 2.5, 0});
+  const Eigen::Vector3d start(0.5, 0.625, 0), end(0.5, 1, -0.09375);
+  for (const PairContact& contact : {only_contact(first, second), only_contact(second, first)}) {
+    EXPECT_NEAR((contact.end - contact.start).norm(), (end - start).norm(), 1e-12);
+    EXPECT_NEAR((contact.point - (start + end) / 2).norm(), 0, 1e-12);
+  }
+  const PairContact segment =
+      only_contact(one_triangle({-2.5, 0, 0.5, -2.5, -4, 1.5, -2.5, 0, 1.5}),
+                   one_triangle({-2.5, -0.5, 1, -2.5, -1.5, 0, -2.5, -3.5, -2}));
+  EXPECT_NEAR((segment.end - segment.start).norm(), std::hypot(0.3, 0.3), 1e-12);
+}
+
+// The longest distance of points that both triangles in the plane z = 0 share: corners of one in
+// the other, and where edges cross. Negative if they share none.
+double longest_shared(const std::array<LongVector, 3>& first,
+                      const std::array<LongVector, 3>& second) {
+  const auto side = [](const LongVector& a, const LongVector& b, const LongVector& p) {
+    return (b - a).cross(p - a).z();
+  };
+  std::vector<LongVector> shared;
+  for (const auto& [of, in] : {std::pair{&first, &second}, std::pair{&second, &first}}) {
+    for (const LongVector& p : *of) {
+      int left = 0, right = 0;
+      for (std::size_t e = 0; e < 3; ++e) {
+        const long double at = side((*in)[e], (*in)[(e + 1) % 3], p);
+        left += at >= 0 ? 1 : 0;
+        right += at <= 0 ? 1 : 0;
+      }
+      if (left == 3 || right == 3) shared.push_back(p);
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const LongVector &a = first[i], &b = first[(i + 1) % 3];
+      const LongVector &c = second[j], &d = second[(j + 1) % 3];
+      const long double of_a = side(c, d, a), of_b = side(c, d, b);
+      const long double of_c = side(a, b, c), of_d = side(a, b, d);
+      if (of_a * of_b >= 0 || of_c * of_d > 0) continue;
+      shared.emplace_back(a + of_a / (of_a - of_b) * (b - a));
+    }
+  }
+  double longest = -1;
+  for (const LongVector& a : shared) {
+    for (const LongVector& b : shared) {
+      longest = std::max(longest, static_cast<double>((a - b).norm()));
+    }
+  }
+  return longest;
+}
+
+TEST(PairContact, OfRandomTrianglesInOnePlaneIsWhatTheyShare) {
+  std::mt19937 random(11);
+  int touching = 0;
+  while (touching < 300) {
+    std::array<std::array<LongVector, 3>, 2> corners;
+    std::array<std::vector<float>, 2> numbers;
+    bool have_areas = true;
+    for (std::size_t t = 0; t < 2; ++t) {
+      for (LongVector& corner : corners[t]) {
+        const auto next = [&] { return static_cast<float>(random() % 17) / 2 - 4; };
+        const float x = next(), y = next();
+        corner = LongVector(x, y, 0);
+        numbers[t].insert(numbers[t].end(), {x, y, 0});
+      }
+      const LongVector normal =
+          (corners[t][1] - corners[t][0]).cross(corners[t][2] - corners[t][0]);
+      have_areas = have_areas && normal.z() != 0;
+    }
+    if (!have_areas) continue;
+    const double longest = longest_shared(corners[0], corners[1]);
+    if (longest < 0) continue;
+    ++touching;
+    const PairContact contact = only_contact(one_triangle(numbers[0]), one_triangle(numbers[1]));
+    EXPECT_NEAR((contact.end - contact.start).norm(), longest, 1e-12);
+  }
 }
 
 }  // namespace
