@@ -5,6 +5,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -30,6 +31,21 @@ static_assert(kRoundoffF32 == std::numeric_limits<float>::epsilon() / 2 &&
 /// A float that is not above x, likewise.
 [[nodiscard]] inline float float_below(double x) noexcept {
   return -float_above(-x);
+}
+
+/// The largest square whose root, rounded, is at most `length`, which is not NaN or negative: a
+/// distance that is compared as its square is within a limit exactly if it is so when it is told.
+[[nodiscard]] inline double largest_square_within(double length) noexcept {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double square = length * length;
+  // Squares that are as far apart as doubles have roots that are half as far: three steps at most,
+  // fewer where they underflow.
+  while (square < kInfinity && std::sqrt(std::nextafter(square, kInfinity)) <= length) {
+    square = std::nextafter(square, kInfinity);
+  }
+  // Below the square root of the least double, a square may have been rounded up.
+  while (std::sqrt(square) > length) square = std::nextafter(square, 0.0);
+  return square;
 }
 
 }  // namespace boxtree

@@ -55,7 +55,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   approximation.absolute_error *= frame.inverse_scale;
   approximation.max_distance *= frame.inverse_scale;
   WalkBound nodes(tree.node_count());
-  const double most = approximation.max_distance * approximation.max_distance;
+  const double most = largest_square_within(approximation.max_distance);
   PointQuery query(tree, nodes, tree_point, most);
   query.approximation = &approximation;
   double left = std::numeric_limits<double>::infinity();  // squared: of what was not visited

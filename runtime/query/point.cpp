@@ -20,9 +20,11 @@ Errc find_nearest(const BoundTree& tree, PointQuery& query) {
 QueriedPoint::QueriedPoint(const BoundTree& tree, const Eigen::Vector3d& queried,
                            double max_distance) noexcept
     : point(tree.frame().to_tree(queried)) {
-  const double distance = max_distance * tree.frame().inverse_scale;
-  most = distance * distance;
-  if (!(max_distance >= 0)) invalid = "max_distance";
+  if (max_distance >= 0) {
+    most = largest_square_within(max_distance * tree.frame().inverse_scale);
+  } else {
+    invalid = "max_distance";
+  }
   if (!is_within_range(point)) invalid = "point";
 }
 

@@ -159,7 +159,7 @@ struct QueriedPoint {
   QueriedPoint(const BoundTree& tree, const Eigen::Vector3d& queried, double max_distance) noexcept;
 
   Eigen::Vector3d point;
-  double most;                    // squared distance
+  double most = 0;                // squared distance
   const char* invalid = nullptr;  // the argument that is not valid, or null
 };
 

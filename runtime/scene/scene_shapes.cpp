@@ -248,7 +248,7 @@ ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& poin
                      at,
                      scene.to_frame(at),
                      frame_error(scene, largest_magnitude(at)),
-                     most * most,
+                     largest_square_within(most),
                      0,
                      {}};
   query.set_bound();

@@ -2,6 +2,7 @@
 // Closest points with an allowed error or a budget, against brute force in extended precision over
 // the decoded triangles, and against the exact query where no error is allowed.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -211,6 +212,39 @@ TEST_P(ApproximatePoints, NothingBeyondTheMaximalDistance) {
           ASSERT_GE(nothing->lower, options.max_distance - 1e-12 * size);
         }
       });
+}
+
+// A distance is within itself and within nothing less, however its square was rounded.
+TEST(ClosestPoint, IsFoundWithinItsOwnDistanceAndWithinNothingLess) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> coordinate(-3, 3);
+  for (const double size : {1.0, 1e-150, 1e130}) {
+    SourceMesh mesh;
+    mesh.name = "triangle";
+    mesh.positions.precision = cooker::Precision::kF64;
+    for (const double x : {0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.0}) {
+      mesh.positions.f64.push_back(x * size);
+    }
+    mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+    const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide8);
+    for (int i = 0; i < 3000; ++i) {
+      const Eigen::Vector3d point =
+          size * Eigen::Vector3d(coordinate(random), coordinate(random), coordinate(random));
+      const PointResult nearest = closest_point(cooked.tree, point);
+      ASSERT_TRUE(nearest.has_value());
+      const double distance = nearest->distance, less = std::nextafter(distance, 0.0);
+      ASSERT_TRUE(closest_point(cooked.tree, point, distance).has_value()) << point.transpose();
+      ASSERT_FALSE(closest_point(cooked.tree, point, less).has_value()) << point.transpose();
+      std::array<PointResult, 1> of_batch;
+      ASSERT_TRUE(closest_points(cooked.tree, {&point, 1}, of_batch, distance));
+      ASSERT_TRUE(of_batch[0].has_value());
+      ASSERT_TRUE(closest_points(cooked.tree, {&point, 1}, of_batch, less));
+      ASSERT_FALSE(of_batch[0].has_value());
+      PointOptions options;
+      options.max_distance = distance;
+      ASSERT_TRUE(closest_point(cooked.tree, point, options)->witness.has_value());
+    }
+  }
 }
 
 TEST_P(ApproximatePoints, RefuseWhatHasNoMeaning) {
