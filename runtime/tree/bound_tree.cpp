@@ -29,6 +29,11 @@ std::uint32_t BoundTree::face_id(std::uint32_t face) const noexcept {
   return is_in_source_order_ ? face : kNoFaceId;
 }
 
+FaceRef BoundTree::with_id(const FaceRef& face) const noexcept {
+  if (face.id != kNoFaceId || face.index >= face_count_) return face;
+  return {face_id(face.index), face.index};
+}
+
 void BoundTree::read_leaf_ids(std::uint32_t leaf,
                               std::span<std::uint32_t, kLeafFaces> out) const noexcept {
   if (face_ids_) return face_ids_.read_leaf(leaf, out);

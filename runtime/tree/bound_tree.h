@@ -143,17 +143,20 @@ class BoundTree {
   /// Which edges are active, or nothing.
   [[nodiscard]] const ActiveEdgesView& active_edges() const noexcept { return active_edges_; }
 
+  /// The same face with its id, which callers who count faces may not have set. Any face.
+  [[nodiscard]] FaceRef with_id(const FaceRef& face) const noexcept;
+
   /// The materials of its faces, or nothing, and their names.
   [[nodiscard]] bool has_materials() const noexcept { return bool{materials_}; }
   [[nodiscard]] std::uint32_t material(const FaceRef& face) const noexcept {
-    return materials_.of(face, face_count_).value_or(kNoMaterial);
+    return materials_.of(with_id(face), face_count_).value_or(kNoMaterial);
   }
   [[nodiscard]] const MaterialNames& material_names() const noexcept { return material_names_; }
 
   /// What the application stored of its faces, or nothing.
   [[nodiscard]] bool has_user_data() const noexcept { return bool{user_data_}; }
   [[nodiscard]] std::optional<std::uint32_t> user_data(const FaceRef& face) const noexcept {
-    return user_data_.of(face, face_count_);
+    return user_data_.of(with_id(face), face_count_);
   }
 
   /// A box of tree space in object space, rounded outward: it holds every position of object space

@@ -123,7 +123,8 @@ class BOXTREE_API Tree {
   [[nodiscard]] bool has_face_ids() const noexcept;
   /// Whether edges are known to be active or not (cook --active-edges); otherwise all are active.
   [[nodiscard]] bool has_active_edges() const noexcept;
-  /// The material of a face that an answer names (cook --materials); kNoMaterial without any.
+  /// The material of a face that an answer names (cook --materials), or of {kNoFaceId, index};
+  /// kNoMaterial without any.
   [[nodiscard]] std::uint32_t material(const FaceRef& face) const noexcept;
   /// Name of a material; empty when it has none.
   [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
@@ -131,8 +132,8 @@ class BOXTREE_API Tree {
   [[nodiscard]] std::uint32_t material_count() const noexcept;
   /// Whether numbers of the application's own are stored of its faces (cook --user-data).
   [[nodiscard]] bool has_user_data() const noexcept;
-  /// The number of a face that an answer names; nothing without any. A negative number of the
-  /// source is the same 32 bits in two's complement.
+  /// The number of a face, as of material(); nothing without any. A negative number of the source
+  /// is the same 32 bits in two's complement.
   [[nodiscard]] std::optional<std::uint32_t> user_data(const FaceRef& face) const noexcept;
   /// A box around all faces, in object space, rounded outward. Empty for an empty tree.
   [[nodiscard]] Eigen::AlignedBox3d bounds() const noexcept;

@@ -57,6 +57,7 @@ std::string material_of(const FaceMaterials& materials, std::uint32_t id) {
 void expect_materials(const SourceMesh& mesh, const FaceMaterials& materials, const Tree& tree) {
   test::for_each_source_face(mesh, tree, [&](const FaceRef& face, std::uint32_t source) {
     EXPECT_EQ(tree.material_name(tree.material(face)), material_of(materials, source));
+    EXPECT_EQ(tree.material({kNoFaceId, face.index}), tree.material(face)) << "counted";
   });
 }
 

@@ -83,6 +83,7 @@ TEST_P(UserDataOf, EachFaceIsThatOfTheSource) {
       EXPECT_TRUE(tree.has_user_data());
       test::for_each_source_face(mesh, tree, [&](const FaceRef& face, std::uint32_t source) {
         EXPECT_EQ(tree.user_data(face), numbers[source]);
+        EXPECT_EQ(tree.user_data({kNoFaceId, face.index}), numbers[source]) << "counted";
       });
       // The smaller of both forms; runs take the ids of faces.
       const std::size_t by_runs = runs.size() * sizeof(FaceRun);
