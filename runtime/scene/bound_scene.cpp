@@ -187,7 +187,8 @@ std::optional<Placement> BoundScene::place_in_units(const BoundTree& tree,
 
 Error BoundScene::invalid_pose(std::uint32_t instance) {
   return error_with(Errc::kInvalidPose, {},
-                    "instance #: its pose is not finite, not invertible or leads beyond 2^200",
+                    "instance #: its pose is not finite, not invertible or leads beyond 2^200 or "
+                    "2^185 extents of the scene",
                     {instance});
 }
 

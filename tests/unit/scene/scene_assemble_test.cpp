@@ -522,7 +522,8 @@ TEST(SceneAssemble, MoreBytesOfNamesThanOneGibAreRefused) {
 TEST(SceneAssemble, PosesThatAreNoneAreRefused) {
   const OneTree one;
   const std::string expected =
-      "invalid_pose: instance 2: its pose is not finite, not invertible or leads beyond 2^200";
+      "invalid_pose: instance 2: its pose is not finite, not invertible or leads beyond 2^200 or "
+      "2^185 extents of the scene";
   PlacedTree wrong;
   wrong.pose.translation()[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(one.refusal(wrong), expected);
@@ -541,7 +542,7 @@ TEST(SceneAssemble, PosesThatAreNoneAreRefused) {
     wrong.pose.translation()[0] = x;
     EXPECT_EQ(scene.update(0, wrong.pose).error().message(),
               "invalid_pose: instance 0: its pose is not finite, not invertible or leads beyond "
-              "2^200");
+              "2^200 or 2^185 extents of the scene");
     if (x == 0) wrong.pose = Pose::Identity();
   }
   EXPECT_EQ(require(scene.pose(0)).matrix(), Pose::Identity().matrix());
