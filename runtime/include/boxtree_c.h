@@ -21,13 +21,13 @@
 // Structs. bxt_vec3, bxt_quaternion, bxt_pose, bxt_plane, bxt_ray, bxt_face and bxt_triangle are
 // what they are for good. All others begin with `struct_size`, the bytes that the caller's header
 // gives them: set it, and the rest to zero, as `bxt_ray_hit hit = {.struct_size = sizeof hit};`
-// does. bxt_limits, bxt_face_options, bxt_approximation and bxt_motion come from the function
-// bxt_default_...(), or bxt_motion_along(), instead: 0 is a value of their members, such as no
-// layer and no node, and not the default; NULL in their place is all defaults. Later versions add
-// members at the end: a library reads and writes no member that its caller does not know, and
-// refuses (BXT_INVALID_QUERY) one it does not know itself unless it is zero. Of an array of structs
-// the first one's size is that of all; the others need not set it. Arrays that are written have it
-// in all of them.
+// does. bxt_limits, bxt_face_options and bxt_approximation come from the function
+// bxt_default_...() instead: 0 is a value of their members, such as no layer and no node, and not
+// the default; NULL in their place is all defaults. A bxt_motion comes from bxt_motion_along().
+// Later versions add members at the end: a library reads and writes no member that its caller does
+// not know, and refuses (BXT_INVALID_QUERY) one it does not know itself unless it is zero. Of an
+// array of structs the first one's size is that of all; the others need not set it. Arrays that are
+// written have it in all of them.
 //
 // Memory. Handles come from functions with "open", "bind", "assemble" or "copy" in their names and
 // are given back, once, to the one that is named there; NULL is given back for nothing. The memory
@@ -214,7 +214,8 @@ typedef struct bxt_face {
   /// Number in the source mesh, the same for all parts of a face that import split; BXT_NO_FACE
   /// when the file has no ids.
   uint32_t id;
-  uint32_t index;     ///< Number in the tree's own order, by which functions take it.
+  uint32_t index;     ///< Number in the tree's own order, by which functions take it; where they
+                      ///< need the id and it is BXT_NO_FACE, they find it by this.
   uint32_t instance;  ///< Of a scene; BXT_NO_INSTANCE of a tree.
 } bxt_face;
 
@@ -231,7 +232,7 @@ enum {
   BXT_CAPSULE = 2,  ///< `position` and `end` of its segment, `radius`.
   BXT_BOX = 3,      ///< `position` of its centre, `half_extents`, `rotation`.
   BXT_CONVEX_HULL =
-      4,  ///< `points` in space of their own, whose origin is at `position`; `rotation`.
+      4  ///< `points` in space of their own, whose origin is at `position`; `rotation`.
 };
 
 /// The most points of a convex hull.
@@ -707,7 +708,8 @@ typedef struct bxt_motion {
   double t_max;          ///< The end, 0 or more.
 } bxt_motion;
 
-/// The motion along a vector.
+/// The motion along a vector, up to its end: t is 0 at its start and 1 (`t_max`) at its end. For a
+/// motion without an end, as C++'s Motion has by default, set `t_max` to INFINITY.
 static inline bxt_motion bxt_motion_along(bxt_vec3 way) {
   bxt_motion motion = {sizeof(bxt_motion), 0, way, 1};
   return motion;
@@ -763,10 +765,10 @@ typedef struct bxt_contact {
   uint16_t feature_index;  ///< As of bxt_cast_hit.
   bxt_face face;           ///< The face that is touched.
   uint32_t triangle;       ///< 0, or 1 for the second half of a quad.
-  bxt_vec3 point;          ///< On the triangle, inside the shape or on its surface, to within rounding.
-  bxt_vec3 normal;         ///< Unit vector along which the shape leaves the triangle soonest.
-  bxt_vec3 face_normal;    ///< Orthogonal to the face, to the side to which the normal points.
-  double depth;            ///< How far it has to move along the normal, 0 or more.
+  bxt_vec3 point;   ///< On the triangle, inside the shape or on its surface, to within rounding.
+  bxt_vec3 normal;  ///< Unit vector along which the shape leaves the triangle soonest.
+  bxt_vec3 face_normal;  ///< Orthogonal to the face, to the side to which the normal points.
+  double depth;          ///< How far it has to move along the normal, 0 or more.
 } bxt_contact;
 
 /// Receives one contact after the other; returns whether to go on.
@@ -780,8 +782,9 @@ BXT_API bxt_status bxt_tree_collide(const bxt_tree* tree, const bxt_shape* shape
 BXT_API bxt_vec3 bxt_contact_resolved_normal(const bxt_contact* contact, const bxt_vec3* velocity);
 /// Of contacts of one shape keeps one of those that neighbouring triangles report of the same
 /// point: within `distance` of each other, with normals whose cosine is at least `cosine` (0.999,
-/// say); the deepest one. Moves them to the front, in their order, and writes how many there are.
-/// Quadratic.
+/// say). Keeps the deepest one, of equal depths the first, then the deepest of those that are
+/// unlike it, and so on. Moves them to the front, in their order, and writes how many there are;
+/// what is behind them is unspecified. Quadratic.
 BXT_API bxt_status bxt_merge_contacts(bxt_contact* contacts, size_t count, double distance,
                                       double cosine, size_t* kept, bxt_error* error);
 
@@ -1097,8 +1100,8 @@ BXT_API bxt_status bxt_scene_collide(const bxt_scene* scene, const bxt_shape* sh
                                      bxt_contact_visitor visitor, void* context,
                                      const bxt_limits* limits, bxt_error* error);
 /// Visits every contact of moving instances with any other, each pair of faces once; the first face
-/// is that of the moving one. Pairs whose layers do not collide are not looked at, nor are
-/// `layers`. Up to 352 KB of stack.
+/// is that of the moving one. Pairs whose layers do not collide are not looked at; `layers` of the
+/// limits have to be BXT_ALL_LAYERS here and below. Up to 352 KB of stack.
 BXT_API bxt_status bxt_scene_contacts(const bxt_scene* scene, bxt_pair_visitor visitor,
                                       void* context, const bxt_limits* limits, bxt_error* error);
 /// Those of one instance, moving or not, whose faces are the first.

@@ -66,7 +66,7 @@ struct Frustum {
   [[nodiscard]] BOXTREE_API static Frustum of(const ViewProjection& view_projection,
                                               ClipDepth depth = ClipDepth::kZeroToOne) noexcept;
   /// Of its corners: four around the near side, and those behind them in the same order. All of
-  /// them are inside.
+  /// them are inside, but for rounding.
   [[nodiscard]] BOXTREE_API static Frustum of(
       const std::array<Eigen::Vector3d, 8>& corners) noexcept;
 };
