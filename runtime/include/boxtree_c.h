@@ -765,10 +765,10 @@ typedef struct bxt_contact {
   uint16_t feature_index;  ///< As of bxt_cast_hit.
   bxt_face face;           ///< The face that is touched.
   uint32_t triangle;       ///< 0, or 1 for the second half of a quad.
-  bxt_vec3 point;   ///< On the triangle, inside the shape or on its surface, to within rounding.
-  bxt_vec3 normal;  ///< Unit vector along which the shape leaves the triangle soonest.
-  bxt_vec3 face_normal;  ///< Orthogonal to the face, to the side to which the normal points.
-  double depth;          ///< How far it has to move along the normal, 0 or more.
+  bxt_vec3 point;          ///< On the triangle, inside the shape or on its surface, to within rounding.
+  bxt_vec3 normal;         ///< Unit vector along which the shape leaves the triangle soonest.
+  bxt_vec3 face_normal;    ///< Orthogonal to the face, to the side to which the normal points.
+  double depth;            ///< How far it has to move along the normal, 0 or more.
 } bxt_contact;
 
 /// Receives one contact after the other; returns whether to go on.
