@@ -30,6 +30,21 @@ int main(int argument_count, char** arguments) {
     const auto contact = boxtree::first_contact(*level, here, *crate, pose);
     if (!visit || !contact.ok()) return 1;
     std::printf("height %g: %d pairs, %s\n", height, pairs, contact ? "touches" : "free");
+
+    // Where: of each two triangles a point, the ends of what they share, a normal and a depth. They
+    // know no active edges; contacts of shapes do (collide.cpp).
+    Eigen::AlignedBox3d where;
+    const auto all = boxtree::pair_contacts(*level, here, *crate, pose,
+                                            [&](const boxtree::PairContact& of_triangles) {
+                                              where.extend(of_triangles.start);
+                                              where.extend(of_triangles.end);
+                                              return true;
+                                            });
+    if (!all) return 1;
+    if (contact) {
+      std::printf("  at x %g to %g, y %g to %g, z %g to %g\n", where.min()[0], where.max()[0],
+                  where.min()[1], where.max()[1], where.min()[2], where.max()[2]);
+    }
   }
   return 0;
 }

@@ -106,11 +106,14 @@ prints point_batch level.bxt <<'END'
  0.25 1.25    -
  0.00 1.00    -
 END
-# At height 0.5 the crate stands on the upper plate: its bottom and the four sides touch; lower, the sides alone.
+# At height 0.5 the crate stands on the upper plate: its bottom and the four sides touch; lower, the sides alone. It is a square
+# of side 1 from above, over a plate from x = 2 to 3.
 prints pairs level.bxt crate.bxt <<'END'
 height 0.625: 0 pairs, free
 height 0.5: 5 pairs, touches
+  at x 2 to 3, y -0.5 to 0.5, z 0.5 to 0.5
 height 0.375: 4 pairs, touches
+  at x 2 to 3, y -0.5 to 0.5, z 0.5 to 0.5
 END
 "$programs/distance" level.bxt crate.bxt >distance.out
 tested+="distance "
