@@ -55,6 +55,16 @@ const Json* object_of(const Json& document, const char* array, std::uint64_t num
   return object.is_object() ? &object : nullptr;
 }
 
+// How many members of that name anywhere in a document are that number. As deep as JSON may be.
+std::size_t times_named(const Json& value, const char* name, std::uint64_t number) {
+  std::size_t times = number_at(value, name, kNone) == number ? 1 : 0;
+  for (const Json::Member& member : value.items()) times += times_named(member.value, name, number);
+  if (value.is_array()) {
+    for (const Json& element : value) times += times_named(element, name, number);
+  }
+  return times;
+}
+
 std::size_t bytes_of_index(std::uint64_t component) {
   if (component == kUnsignedByte) return 1;
   if (component == kUnsignedShort) return 2;
@@ -271,17 +281,24 @@ class GltfReorder {
     return {};
   }
 
-  // Whether the numbers may be changed where they are: nothing else uses them, all are written, and
-  // they are in the file.
+  // Whether the numbers may be changed where they are: nothing else names or overlaps their view
+  // (sparse accessors, images, extensions), all are written, and they are in the file.
   [[nodiscard]] bool has_place_of_its_own() const {
     const std::uint64_t used = number_at(*primitive_, "indices", kNone);
     if (used == kNone || buffer_ != 0 || !first_buffer_is_chunk()) return false;
     const Json& accessor = document_["accessors"][used];
     if (number_at(accessor, "count", 0) != 3 * reordering_.faces.size()) return false;
     const std::uint64_t view = number_at(accessor, "bufferView", kNone);
-    std::size_t users = 0;
-    for (const Json& other : document_["accessors"]) {
-      users += number_at(other, "bufferView", kNone) == view ? 1u : 0u;
+    if (times_named(document_, "bufferView", view) != 1) return false;
+    const Json& views = document_["bufferViews"];
+    for (const Json& other : views) {
+      if (&other == &views[view]) continue;
+      if (other.contains("extensions")) return false;  // which may name bytes in another way
+      const std::uint64_t begin = number_at(other, "byteOffset", 0);
+      const std::uint64_t bytes = number_at(other, "byteLength", 0);
+      const bool is_apart =
+          begin >= offset_ + numbers_.size() || bytes <= offset_ - std::min(offset_, begin);
+      if (number_at(other, "buffer", kNone) == buffer_ && !is_apart) return false;
     }
     for (const Json& mesh : document_["meshes"]) {
       const Json* const primitives = mesh.find("primitives");
@@ -292,7 +309,7 @@ class GltfReorder {
         }
       }
     }
-    return users == 1;
+    return true;
   }
 
   [[nodiscard]] bool first_buffer_is_chunk() const {

@@ -579,6 +579,28 @@ def test_gltf(folder):
             gltf.write_text(json.dumps(document), encoding="utf-8")
             check(gltf, folder / f"{name}-{kind}-tree.gltf", "--exact")
             check(gltf, folder / "other" / f"{name}-{kind}-tree.gltf", "--exact")
+    # Bytes that something else reads, too, are left as they are.
+    def other_view(changed):
+        changed["bufferViews"].append({"buffer": 0, "byteOffset": 6, "byteLength": 24})
+        changed["accessors"].append({"bufferView": len(changed["bufferViews"]) - 1, "componentType": 5123,
+                                     "count": 12, "type": "SCALAR"})
+        changed["meshes"][0]["primitives"].append({"attributes": {"POSITION": 0}, "mode": 1, "indices":
+                                                   len(changed["accessors"]) - 1})
+
+    def sparse(changed):
+        changed["accessors"].append({"componentType": 5126, "count": 4, "type": "VEC3", "sparse": {
+            "count": 1, "indices": {"bufferView": 0, "componentType": 5123}, "values": {"bufferView": 1}}})
+
+    def image(changed):
+        changed["images"].append({"bufferView": 0, "mimeType": "image/png"})
+
+    for change in (other_view, sparse, image):
+        document, data = gltf_parts(rng, "H")
+        change(document)
+        shared, target = folder / f"{change.__name__}.glb", folder / f"{change.__name__}-tree.glb"
+        write_glb(shared, document, data)
+        run("cook", shared, "-o", folder / "shared.bxt", "--exact", "--write-reordered", target)
+        expect(data in target.read_bytes(), "bytes of", shared)
     # What has no single order.
     document, data = gltf_parts(rng, "H")
 
