@@ -34,7 +34,8 @@ static_assert(kRoundoffF32 == std::numeric_limits<float>::epsilon() / 2 &&
 }
 
 /// The largest square whose root, rounded, is at most `length`, which is not NaN or negative: a
-/// distance that is compared as its square is within a limit exactly if it is so when it is told.
+/// distance that is compared as its square is within a limit exactly if it is so when it is told,
+/// unless the distance is subnormal there.
 [[nodiscard]] inline double largest_square_within(double length) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double square = length * length;

@@ -6,6 +6,7 @@
 #include <boxtree/overlap.h>
 
 #include "runtime/primitive/float_state.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/walk_tree.h"
@@ -23,7 +24,7 @@ QueriedShape<SphereQuery> in_tree_space(const BoundTree& tree, const Sphere& sph
   if (!(sphere.radius >= 0) || !std::isfinite(sphere.radius)) return {"radius", {}};
   // Twice kMaxCoordinate spans every distance that can occur; a larger radius changes no answer.
   const double radius = std::min(sphere.radius * tree.frame().inverse_scale, 4 * kMaxCoordinate);
-  return {nullptr, {center, radius * radius}};
+  return {nullptr, {center, largest_square_within(radius)}};
 }
 
 Result<Visit> overlap_sphere(const Tree& queried, const Eigen::Vector3d& center, double radius,

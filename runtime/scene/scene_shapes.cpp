@@ -91,7 +91,7 @@ struct SphereInUnits {
   [[nodiscard]] Result<Visit> run_query(const BoundScene::Placed& placed,
                                         const FacesOfInstance& faces, QueryWork& work) const {
     const Placement& placement = placed.placement;
-    const PlacedSphere exact{placement.to_world(), center, radius * radius};
+    const PlacedSphere exact{placement.to_world(), center, largest_square_within(radius)};
     const PointInTree in_tree(placement, center);
     double most = 4 * kMaxCoordinate;
     double certain = 0;

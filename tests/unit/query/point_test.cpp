@@ -235,6 +235,10 @@ TEST(ClosestPoint, IsFoundWithinItsOwnDistanceAndWithinNothingLess) {
       const double distance = nearest->distance, less = std::nextafter(distance, 0.0);
       ASSERT_TRUE(closest_point(cooked.tree, point, distance).has_value()) << point.transpose();
       ASSERT_FALSE(closest_point(cooked.tree, point, less).has_value()) << point.transpose();
+      int in_sphere = 0;
+      const auto count = [&](const FaceRef&) { return ++in_sphere > 0; };
+      ASSERT_TRUE(overlap_sphere(cooked.tree, point, distance, count).ok());
+      ASSERT_EQ(in_sphere, 1) << point.transpose();
       std::array<PointResult, 1> of_batch;
       ASSERT_TRUE(closest_points(cooked.tree, {&point, 1}, of_batch, distance));
       ASSERT_TRUE(of_batch[0].has_value());
