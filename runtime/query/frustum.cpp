@@ -86,6 +86,7 @@ FrustumSide side_of(const BoundTree& tree, const Frustum::Plane& plane) noexcept
 }  // namespace
 
 Frustum Frustum::of(const ViewProjection& view_projection, ClipDepth depth) noexcept {
+  const DefaultFloatState state;
   const auto row = [&](Eigen::Index i) -> Plane { return view_projection.row(i).transpose(); };
   const Plane near = depth == ClipDepth::kZeroToOne ? row(2) : row(3) + row(2);
   return {
@@ -93,6 +94,7 @@ Frustum Frustum::of(const ViewProjection& view_projection, ClipDepth depth) noex
 }
 
 Frustum Frustum::of(const std::array<Eigen::Vector3d, 8>& corners) noexcept {
+  const DefaultFloatState state;
   // Each side has four of them, one after the other around it.
   constexpr std::array<std::array<std::size_t, 4>, kPlanes> kSides = {
       {{0, 3, 7, 4}, {1, 5, 6, 2}, {0, 4, 5, 1}, {3, 2, 6, 7}, {0, 1, 2, 3}, {4, 7, 6, 5}}};
