@@ -24,7 +24,7 @@ constexpr Expectation kExpectations[] = {
     {"end", kInRange},
     {"position", kInRange},
     {"point", kInRange},
-    {"points", "finite points, none farther than 2^185 mesh extents away"},
+    {"points", "1 to 256 finite points, none farther than 2^185 mesh extents away"},
     {"direction", "finite, and not zero for a ray"},
     {"radius", kFinite},
     {"half_extents", kFinite},

@@ -22,7 +22,7 @@ struct Member;
 struct OpenOptions {
   /// Read the file into private memory instead of mapping it [default false]: for files that other
   /// programs may modify in place. On Linux, from 8 MB on and without `memory`, that is in huge
-  /// pages if the system has any. Only for open(path).
+  /// pages if the system has any. Of open(path) alone; bytes in memory are used where they are.
   bool copy = false;
   /// Check the XXH3 of every section [default false]: reads the whole file.
   bool verify_checksums = false;
@@ -51,7 +51,8 @@ class BOXTREE_API File {
   /// Safe for untrusted bytes.
   /// While it is mapped the file must not be truncated in place: replace files by rename, as the
   /// cooker does, or open them with OpenOptions::copy.
-  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed, kOutOfMemory and the codes 10..29.
+  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed, kOutOfMemory (of the bytes of a copy; for
+  /// want of the few hundred that a File takes std::bad_alloc is thrown) and the codes 10..29.
   static Result<File> open(const std::string& path, const OpenOptions& options = {});
 
   /// The same over memory of the caller, which must stay unchanged while the File or a Tree bound

@@ -61,7 +61,8 @@ struct SceneOptions {
   /// Refuse a scene of which no instance has a name [default false] rather than answer an empty
   /// name later.
   bool require_names = false;
-  /// For trees with external geometry.
+  /// For trees with external geometry; those of other trees are not looked at, nor whether
+  /// positions are those of the cook (BindOptions::verify_mesh).
   std::span<const SceneMeshArrays> meshes = {};
   /// Static instances that update() shall be allowed to move: doors, say; see make_movable(). The
   /// others that move are known from the file.

@@ -94,7 +94,7 @@ class BOXTREE_API Tree {
   /// Checks record and section sizes of tree `index` and prepares it for queries; cost does not
   /// depend on its size, except with BindOptions::verify_mesh.
   /// Errors: kTreeIndex, codes 30..32, kSectionMissing, kSectionSize, kPartLeftOut,
-  /// kExternalMeshNeeded, kExternalMeshMismatch.
+  /// kExternalMeshNeeded, kExternalMeshMismatch, with verify_mesh kVertexOutOfRange.
   static Result<Tree> bind(const File& file, std::uint32_t index, const BindOptions& options = {});
 
   // A tree must not outlive its file.

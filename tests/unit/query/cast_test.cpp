@@ -527,7 +527,7 @@ TEST(CastIntoAVertex, TouchesItFirst) {
 TEST(CastHull, TheNormalPartsItFromTheTriangleThatItTouches) {
   std::mt19937 random(4);
   const auto integer = [&](int most) {
-    return static_cast<int>(random() % (2u * most + 1)) - most;
+    return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most;
   };
   const auto vector = [&](int most) {
     const int x = integer(most), y = integer(most), z = integer(most);
