@@ -37,15 +37,18 @@ static_assert(kRoundoffF32 == std::numeric_limits<float>::epsilon() / 2 &&
 /// distance that is compared as its square is within a limit exactly if it is so when it is told,
 /// unless the distance is subnormal there.
 [[nodiscard]] inline double largest_square_within(double length) noexcept {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto neighbour = [](double x, int steps) {  // of a positive number
+    return std::bit_cast<double>(std::bit_cast<std::int64_t>(x) + steps);
+  };
   double square = length * length;
-  // Squares that are as far apart as doubles have roots that are half as far: three steps at most,
-  // fewer where they underflow.
-  while (square < kInfinity && std::sqrt(std::nextafter(square, kInfinity)) <= length) {
-    square = std::nextafter(square, kInfinity);
+  if (square == std::numeric_limits<double>::infinity()) return square;
+  // Roots below (length + ulp / 2)^2 are rounded to the length: that is 0.7 to 1.5 units in the
+  // last place of the square above it, which is itself rounded by half of one, so one or two steps.
+  while (std::sqrt(neighbour(square, 1)) <= length) square = neighbour(square, 1);
+  // The root of a square is the length again, unless the square is subnormal and was rounded up.
+  if (square < std::numeric_limits<double>::min()) {
+    while (std::sqrt(square) > length) square = neighbour(square, -1);
   }
-  // Below the square root of the least double, a square may have been rounded up.
-  while (std::sqrt(square) > length) square = std::nextafter(square, 0.0);
   return square;
 }
 
