@@ -137,7 +137,7 @@ function(boxtree_export_only target version symbols)
 endfunction()
 
 # boxtree_precompile(TARGET HEADERS...): parses the headers of other projects once for all sources of a target. A
-# source must still include what it uses; builds without it (presets release, scalar and asan-ubsan) fail where one does
+# source must still include what it uses; builds without it (presets scalar and asan-ubsan) fail where one does
 # not. Not for targets with sources that have optimisations of their own (the runtime grew from 450 to 494 KB). Where
 # CMAKE_UNITY_BUILD is on, sources are so few that parsing takes less than writing what was parsed (8 s, by GCC 12).
 function(boxtree_precompile target)

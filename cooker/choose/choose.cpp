@@ -12,7 +12,7 @@
 namespace boxtree::cooker {
 namespace {
 
-constexpr double kNotEligible = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Geometry stores with the same positions: trees with either still touch where their meshes do.
 enum class Positioning : std::uint8_t { kExternal, kLossless, kOnGrid };
@@ -27,8 +27,8 @@ Positioning positioning_of(GeometryId geometry) {
 struct Rated {
   double bytes = 0;  // per triangle
   double slowdown = 0;
-  bool eligible = false;  // see may_be_chosen()
-  double score = kNotEligible;   // infinite if not eligible or over a budget
+  bool eligible = false;     // see may_be_chosen()
+  double score = kInfinite;  // infinite if not eligible or over a budget
 };
 
 double score_of(double bytes, double slowdown, Goal goal) {
@@ -51,9 +51,9 @@ std::vector<Rated> rate(const Contest& tree, const Wishes& wishes) {
     const Candidate& candidate = tree.candidates[i];
     Rated of{
         static_cast<double>(candidate.bytes()) / std::max(1.0, static_cast<double>(tree.triangles)),
-        slower[i], eligible[i], kNotEligible};
-    const bool in_budget = of.bytes <= wishes.max_bytes_per_triangle.value_or(kNotEligible) &&
-                           of.slowdown <= wishes.max_slowdown.value_or(kNotEligible);
+        slower[i], eligible[i], kInfinite};
+    const bool in_budget = of.bytes <= wishes.max_bytes_per_triangle.value_or(kInfinite) &&
+                           of.slowdown <= wishes.max_slowdown.value_or(kInfinite);
     if (of.eligible && in_budget) of.score = score_of(of.bytes, of.slowdown, wishes.goal);
     rated.push_back(of);
   }
@@ -66,7 +66,7 @@ std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Rated>
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < rated.size(); ++i) {
     const bool fits = positioning_of(tree.candidates[i].geometry) == positioning;
-    if (!fits || rated[i].score == kNotEligible) continue;
+    if (!fits || rated[i].score == kInfinite) continue;
     if (!best || rated[i].score < rated[*best].score) best = i;
   }
   return best;
@@ -120,12 +120,12 @@ std::string reason(const Candidate& candidate, const Rated& rated, const Candida
   if (!is_wide(candidate.codec) && is_wide(chosen.codec)) {
     return "a codec of boxtree::paper: --codec chooses it";
   }
-  if (rated.bytes > wishes.max_bytes_per_triangle.value_or(kNotEligible))
+  if (rated.bytes > wishes.max_bytes_per_triangle.value_or(kInfinite))
     return "over the budget of bytes";
-  if (rated.slowdown > wishes.max_slowdown.value_or(kNotEligible)) return "over the budget of time";
+  if (rated.slowdown > wishes.max_slowdown.value_or(kInfinite)) return "over the budget of time";
   const bool is_placed_otherwise =
       positioning_of(candidate.geometry) != positioning_of(chosen.geometry);
-  if (is_placed_otherwise && rated.score == kNotEligible) return "another geometry";
+  if (is_placed_otherwise && rated.score == kInfinite) return "another geometry";
   if (is_placed_otherwise && rated.score <= chosen_rated.score) {
     return fmt::format("no worse alone, but the trees of the file share geometry {}",
                        geometry_name(chosen.geometry));
@@ -208,13 +208,13 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     rated.push_back(rate(trees[t], wishes[t]));
   }
   const auto least_score = [&](std::size_t t) {
-    double least = kNotEligible;
+    double least = kInfinite;
     for (const Rated& candidate : rated[t]) least = std::min(least, candidate.score);
     return least;
   };
 
   std::vector<std::size_t> chosen;
-  double least = kNotEligible;
+  double least = kInfinite;
   for (const Positioning positioning : kPositionings) {
     std::vector<std::size_t> of_store;
     double score = 0;
@@ -239,7 +239,7 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     std::size_t worst = 0;
     for (std::size_t t = trees.size(); t-- > 0;) {
       const bool possible = std::any_of(rated[t].begin(), rated[t].end(),
-                                        [](const Rated& j) { return j.score != kNotEligible; });
+                                        [](const Rated& j) { return j.score != kInfinite; });
       if (!possible) worst = t;
     }
     return refusal(trees[worst], rated[worst], wishes[worst]);

@@ -300,16 +300,7 @@ class GltfReorder {
           begin >= offset_ + numbers_.size() || bytes <= offset_ - std::min(offset_, begin);
       if (number_at(other, "buffer", kNone) == buffer_ && !is_apart) return false;
     }
-    for (const Json& mesh : document_["meshes"]) {
-      const Json* const primitives = mesh.find("primitives");
-      if (primitives == nullptr) continue;
-      for (const Json& primitive : *primitives) {
-        if (&primitive != primitive_ && number_at(primitive, "indices", kNone) == used) {
-          return false;
-        }
-      }
-    }
-    return true;
+    return times_named(document_, "indices", used) == 1;  // by no other primitive
   }
 
   [[nodiscard]] bool first_buffer_is_chunk() const {

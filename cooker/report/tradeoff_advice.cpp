@@ -18,7 +18,7 @@
 namespace boxtree::cooker {
 namespace {
 
-constexpr double kNotEligible = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 bool has_disturbed_times(const MeshTradeoff& mesh) {
   return mesh.timed && mesh.timed_work.is_disturbed();
@@ -50,11 +50,11 @@ std::optional<std::size_t> least(const std::vector<bool>& may_be_advised,
                                  const std::vector<double>& slower,
                                  const std::function<double(std::size_t)>& score) {
   std::optional<std::size_t> best;
-  std::pair best_score{kNotEligible, kNotEligible};
+  std::pair best_score{kInfinite, kInfinite};
   for (std::size_t i = 0; i < may_be_advised.size(); ++i) {
     if (!may_be_advised[i]) continue;
     const std::pair of_point{score(i), slower[i]};
-    if (of_point.first < kNotEligible && of_point < best_score) {
+    if (of_point.first < kInfinite && of_point < best_score) {
       best = i;
       best_score = of_point;
     }
@@ -200,16 +200,16 @@ std::optional<Advice> advise(const MeshTradeoff& mesh) {
   const auto is_exact = [&](std::size_t i) { return is_lossless(mesh.points[i].geometry); };
   const double coarse = mesh.tolerance ? mesh.tolerance_left : kCoarse;
   const double fine = mesh.tolerance ? mesh.tolerance_left : kFine;
-  const auto smallest = least(
-      may, slower, [&](std::size_t i) { return moved(i) <= coarse ? bytes(i) : kNotEligible; });
+  const auto smallest =
+      least(may, slower, [&](std::size_t i) { return moved(i) <= coarse ? bytes(i) : kInfinite; });
   const auto balanced = least(may, slower, [&](std::size_t i) {
-    return moved(i) <= fine ? bytes(i) * slower[i] : kNotEligible;
+    return moved(i) <= fine ? bytes(i) * slower[i] : kInfinite;
   });
   // Among equal surfaces: triangles that a coarse grid makes points take no time.
   const auto fastest =
-      least(may, slower, [&](std::size_t i) { return is_exact(i) ? slower[i] : kNotEligible; });
+      least(may, slower, [&](std::size_t i) { return is_exact(i) ? slower[i] : kInfinite; });
   const auto exact =
-      least(may, slower, [&](std::size_t i) { return is_exact(i) ? bytes(i) : kNotEligible; });
+      least(may, slower, [&](std::size_t i) { return is_exact(i) ? bytes(i) : kInfinite; });
   if (!smallest || !balanced || !fastest || !exact) return std::nullopt;
   return Advice{*smallest, *balanced, *fastest, *exact};
 }

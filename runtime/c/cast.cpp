@@ -12,7 +12,6 @@
 #include "runtime/c/handle.h"
 #include "runtime/c/options.h"
 #include "runtime/c/shape.h"
-#include "runtime/primitive/float_state.h"
 #include "runtime/query/collide_query.h"
 
 using namespace boxtree;
@@ -177,7 +176,6 @@ bxt_status bxt_merge_contacts(bxt_contact* contacts, size_t count, double distan
     *kept = 0;
     return BXT_OK;
   }
-  const DefaultFloatState state;
   const Elements<bxt_contact> elements(contacts);
   *kept = merge(
       count, distance, cosine,

@@ -370,8 +370,9 @@ bool plane_crossing(std::span<const Eigen::Vector3d> points, const Corners& corn
   for (std::size_t i = 0; i < points.size(); ++i) height[i] = dot(n, points[i] - corner[0]);
   double least = kUnbounded;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(height[i] < 0)) continue;
     for (std::size_t j = 0; j < points.size(); ++j) {
-      if (!(height[i] < 0 && height[j] > 0)) continue;
+      if (!(height[j] > 0)) continue;
       const Eigen::Vector3d met =
           points[i] + height[i] / (height[i] - height[j]) * (points[j] - points[i]);
       const Eigen::Vector3d on_triangle = closest_point_on_triangle(met, {corner});

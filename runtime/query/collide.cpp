@@ -107,7 +107,6 @@ Eigen::Vector3d resolved_normal(const Contact& contact, const Eigen::Vector3d& v
 }
 
 std::size_t merge_contacts(std::span<Contact> contacts, double distance, double cosine) {
-  const DefaultFloatState state;
   return merge(contacts, distance, cosine);
 }
 

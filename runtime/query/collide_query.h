@@ -10,6 +10,7 @@
 
 #include <boxtree/collide.h>
 
+#include "runtime/primitive/float_state.h"
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/cast_query.h"
 
@@ -56,32 +57,32 @@ struct MergedContact {
 template <class Read, class Drop, class Move>
 [[nodiscard]] std::size_t merge(std::size_t count, double distance, double cosine, const Read& read,
                                 const Drop& drop, const Move& move) {
+  const DefaultFloatState state;
   const auto is_same = [&](const MergedContact& a, const MergedContact& b) {
     const Eigen::Vector3d between = a.point - b.point;
     return std::sqrt(squared_length(between)) <= distance && dot(a.normal, b.normal) >= cosine;
   };
   std::size_t kept = 0;
-  // Those kept so far are all that come before (last_depth, last), by depth and then by place.
-  double last_depth = std::numeric_limits<double>::infinity();
-  std::size_t last = 0;
-  for (bool is_first = true;; is_first = false) {  // each turn keeps one
+  // Those kept so far are all that are deeper than `depth`, or as deep and before place `from`.
+  double depth = std::numeric_limits<double>::infinity();
+  std::size_t from = 0;
+  while (true) {  // each turn keeps one
     std::size_t deepest = count;
-    double depth = -std::numeric_limits<double>::infinity();
+    double most = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < count; ++i) {
       const double of_i = read(i).depth;
-      const bool is_left =
-          is_first ? !std::isnan(of_i) : of_i < last_depth || (of_i == last_depth && i > last);
-      if (!is_left || (deepest != count && !(of_i > depth))) continue;
+      const bool is_left = of_i < depth || (of_i == depth && i >= from);
+      if (!is_left || (deepest != count && !(of_i > most))) continue;
       deepest = i;
-      depth = of_i;
+      most = of_i;
     }
     if (deepest == count) break;
     const MergedContact best = read(deepest);
     for (std::size_t i = 0; i < count; ++i) {
       if (i != deepest && is_same(read(i), best)) drop(i);
     }
-    last_depth = depth;
-    last = deepest;
+    depth = most;
+    from = deepest + 1;
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isnan(read(i).depth)) move(i, kept++);

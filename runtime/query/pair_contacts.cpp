@@ -50,8 +50,8 @@ class TouchingTriangles {
   void share() noexcept {
     cut(first_, second_);
     cut(second_, first_);
-    if (count_ ==
-        0) {  // too thin to have planes: segments along each other share some of their ends
+    if (count_ == 0) {
+      // Too thin to have planes. Segments along each other share some of their ends.
       for (const Eigen::Vector3d& corner : first_) keep(corner);
       for (const Eigen::Vector3d& corner : second_) keep(corner);
     }

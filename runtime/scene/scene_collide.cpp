@@ -131,7 +131,6 @@ Result<Visit> overlap_oriented_box(const Scene& scene, const OrientedBox& box,
 }
 
 std::size_t merge_contacts(std::span<SceneContact> contacts, double distance, double cosine) {
-  const DefaultFloatState state;
   return merge(contacts, distance, cosine);
 }
 

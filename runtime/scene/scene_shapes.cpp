@@ -78,6 +78,7 @@ struct PointInTree {
 struct SphereInUnits {
   Eigen::Vector3d center;
   double radius;
+  double squared_radius;
   Eigen::Vector3d center_in_frame;
   double squared_radius_in_frame;
 
@@ -91,7 +92,7 @@ struct SphereInUnits {
   [[nodiscard]] Result<Visit> run_query(const BoundScene::Placed& placed,
                                         const FacesOfInstance& faces, QueryWork& work) const {
     const Placement& placement = placed.placement;
-    const PlacedSphere exact{placement.to_world(), center, largest_square_within(radius)};
+    const PlacedSphere exact{placement.to_world(), center, squared_radius};
     const PointInTree in_tree(placement, center);
     double most = 4 * kMaxCoordinate;
     double certain = 0;
@@ -187,7 +188,7 @@ VisitResult visit_sphere(const Scene& queried, const Sphere& sphere, SceneFaceVi
   }
   // As for a tree, a larger radius changes no answer.
   const double length = std::min(scene.to_units(sphere.radius), 4 * kMaxCoordinate);
-  const SphereInUnits shape{at, length, scene.to_frame(at),
+  const SphereInUnits shape{at, length, largest_square_within(length), scene.to_frame(at),
                             frame_bound(length, frame_error(scene, largest_magnitude(at)))};
   return query_scene(scene, shape, visitor, layers, limits);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <set>
 #include <span>
@@ -578,12 +579,12 @@ TEST(MergeContacts, TheDeepestOfThoseLeftIsKept) {
     for (int i = 0; i < 20; ++i) {
       all.emplace_back(static_cast<double>(random() % 24) / 2, static_cast<double>(random() % 4));
     }
-    Places expected;
-    for (std::size_t i = 0; i < all.size(); ++i) expected.emplace_back(all[i].second, -double(i));
-    std::sort(expected.rbegin(), expected.rend());
+    std::vector<std::size_t> by_depth(all.size());
+    std::iota(by_depth.begin(), by_depth.end(), std::size_t{0});
+    std::stable_sort(by_depth.begin(), by_depth.end(),
+                     [&](std::size_t a, std::size_t b) { return all[a].second > all[b].second; });
     std::set<std::size_t> kept;
-    for (const auto& [depth, place] : expected) {
-      const auto i = static_cast<std::size_t>(-place);
+    for (const std::size_t i : by_depth) {
       const auto is_like_i = [&](std::size_t k) {
         return std::abs(all[k].first - all[i].first) <= 1;
       };
