@@ -2,20 +2,20 @@
 #include "cooker/import/scene_hash.h"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
-#define XXH_INLINE_ALL
 #include <assimp/scene.h>
-#include <xxhash.h>
 
 #include "cooker/import/hash_mix.h"
+#include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {
 
 template <class T>
 std::uint64_t with_array(std::uint64_t hash, const T* array, std::size_t count) {
-  return hash_with(hash, array == nullptr ? 0 : XXH3_64bits(array, count * sizeof(T)));
+  return hash_with(hash, array == nullptr ? 0 : checksum(std::as_bytes(std::span(array, count))));
 }
 
 }  // namespace

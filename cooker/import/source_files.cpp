@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Checks and hashes source files.
-#define XXH_INLINE_ALL
 #include "cooker/import/source_files.h"
 
 #include <cerrno>
 #include <cstdio>
-#include <memory>
+#include <span>
 #include <system_error>
-
-#include <xxhash.h>
 
 #include "cooker/import/whole_file.h"
 #include "cooker/system/file_handle.h"
 #include "cooker/system/input_failure.h"
 #include "cooker/system/path.h"
+#include "runtime/file/checksum.h"
+#include "runtime/file/checksum_stream.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -44,24 +43,19 @@ Status check_source_file(const SourceFile& source, const std::string& named_in) 
 }
 
 Result<std::uint64_t> hash_source_files(std::span<const fs::path> files) {
-  struct FreeState {
-    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
-  };
-  const std::unique_ptr<XXH3_state_t, FreeState> state(XXH3_createState());
-  if (!state) return Error{Errc::kInternal, "no memory for a hash"};
-  XXH3_64bits_reset(state.get());
+  ChecksumStream sum;
   for (const fs::path& file : files) {
     const Status status =
-        read_chunks(file, kAnyBytes, [&state](const char* bytes, std::size_t count) {
-          XXH3_64bits_update(state.get(), bytes, count);
+        read_chunks(file, kAnyBytes, [&sum](const char* bytes, std::size_t count) {
+          sum.add(std::as_bytes(std::span(bytes, count)));
         });
     if (!status.ok()) return status.error();
   }
-  return XXH3_64bits_digest(state.get());
+  return sum.value();
 }
 
 std::uint64_t hash_source_bytes(Bytes bytes) {
-  return XXH3_64bits(bytes.data(), bytes.size());
+  return checksum(bytes);
 }
 
 }  // namespace boxtree::cooker

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Compares and merges the meshes of a scene.
-#define XXH_INLINE_ALL
 #include "cooker/import/source_scene.h"
 
 #include <algorithm>
@@ -9,7 +8,8 @@
 #include <span>
 #include <utility>
 
-#include <xxhash.h>
+#include "cooker/import/hash_mix.h"
+#include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -97,7 +97,7 @@ void renumber(std::vector<FaceRun>& runs, const std::vector<std::uint32_t>& numb
 std::uint64_t hash_of_shape(const SceneMesh& mesh) {
   std::uint64_t hash = mesh.source_faces;
   for (const std::span<const std::byte> bytes : shape_of(mesh)) {
-    hash = XXH3_64bits_withSeed(bytes.data(), bytes.size(), hash);
+    hash = hash_with(hash, checksum(bytes));
   }
   return hash;
 }

@@ -1,29 +1,19 @@
 // SPDX-License-Identifier: MIT
 // One buffer over stdio; large reads bypass it.
-#define XXH_INLINE_ALL
 #include "cooker/import/source_stream.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
+#include <span>
 #include <string>
 #include <utility>
-
-#include <xxhash.h>
 
 #include "cooker/import/file_error.h"
 #include "cooker/system/input_failure.h"
 
 namespace boxtree::cooker {
-
-struct SourceStream::Hash {
-  XXH3_state_t state;
-};
-
-void SourceStream::FreeHash::operator()(Hash* hash) const {
-  delete hash;
-}
 
 Result<SourceStream> SourceStream::open(const SourceFile& source) {
   SourceStream stream;
@@ -33,8 +23,6 @@ Result<SourceStream> SourceStream::open(const SourceFile& source) {
   const Result<std::uint64_t> size = source.size();
   if (!size) return size.error();
   stream.unread_ = *size;
-  stream.hash_.reset(new Hash);
-  XXH3_64bits_reset(&stream.hash_->state);
   stream.buffer_.resize(kBufferBytes);
   stream.at_ = stream.end_ = stream.buffer_.data();
   stream.refill(static_cast<std::size_t>(std::min<std::uint64_t>(stream.unread_, kBufferBytes)));
@@ -52,7 +40,7 @@ bool SourceStream::refill(std::size_t count) {
       static_cast<std::size_t>(std::min<std::uint64_t>(unread_, kBufferBytes - kept));
   char* const behind = buffer_.data() + kept;
   const std::size_t got = std::fread(behind, 1, wanted, file_.get());
-  XXH3_64bits_update(&hash_->state, behind, got);
+  sum_.add(std::as_bytes(std::span(behind, got)));
   unread_ -= got;
   if (got < wanted) {
     // The file cannot be read, or has shrunk: there are no more bytes in either case.
@@ -93,7 +81,7 @@ Error SourceStream::ended_in(std::string_view what) const {
 
 Result<std::uint64_t> SourceStream::finish() {
   if (!skip(left()) || error_ != 0) return ended_in("its last bytes");
-  return XXH3_64bits_digest(&hash_->state);
+  return sum_.value();
 }
 
 }  // namespace boxtree::cooker

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +14,7 @@
 
 #include "cooker/import/source_file.h"
 #include "cooker/system/file_handle.h"
+#include "runtime/file/checksum_stream.h"
 
 namespace boxtree::cooker {
 
@@ -60,17 +60,12 @@ class SourceStream {
   Result<std::uint64_t> finish();
 
  private:
-  struct Hash;
-  struct FreeHash {
-    void operator()(Hash* hash) const;
-  };
-
   SourceStream() = default;
   bool refill(std::size_t count);
 
   std::string title_;
   FileHandle file_;
-  std::unique_ptr<Hash, FreeHash> hash_;
+  ChecksumStream sum_;  // of what was in the buffer
   std::vector<char> buffer_;
   const char* at_ = nullptr;
   const char* end_ = nullptr;

@@ -27,7 +27,8 @@ LIBRARIES = {
 }
 # What takes seconds of every source that sees it, and what of the project may include it.
 SLOW_HEADERS = {"CLI/": ("cooker/cli/command_app.h",),
-                "nlohmann/": ("cooker/text/json.cpp",)}
+                "nlohmann/": ("cooker/text/json.cpp",),
+                "xxhash.h": ("runtime/file/checksum.cpp",)}
 PRINTS = ("iostream", "cstdio", "stdio.h", "print")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 PUBLIC = "boxtree/"
