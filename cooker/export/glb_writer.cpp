@@ -9,6 +9,7 @@
 #include <map>
 
 #include "cooker/export/placed_shape.h"
+#include "cooker/import/gltf_numbers.h"
 #include "cooker/text/json.h"
 #include "cooker/version.h"
 #include "cooker/write/byte_sink.h"
@@ -19,27 +20,9 @@ namespace {
 
 using Position = std::array<float, 3>;
 
-// Numbers of the glTF 2.0 specification.
-constexpr std::uint32_t kGlbMagic = 0x46546c67u;  // "glTF"
-constexpr std::uint32_t kGlbVersion = 2;
-constexpr std::uint32_t kJsonChunk = 0x4e4f534au;    // "JSON"
-constexpr std::uint32_t kBinaryChunk = 0x004e4942u;  // "BIN"
-constexpr int kUnsignedShort = 5123;
-constexpr int kUnsignedInt = 5125;
-constexpr int kFloat = 5126;
-constexpr int kArrayBuffer = 34962;
-constexpr int kElementArrayBuffer = 34963;
-constexpr int kModeLines = 1;
-constexpr int kModeTriangles = 4;
-constexpr std::uint64_t kGlbAlignment = 4;
-
 // The largest number of each index type restarts primitives and may not be used.
 constexpr std::uint64_t kMaxShortVertices = 0xffff;
 constexpr std::uint64_t kMaxVertexCount = 0xffffffff;
-
-constexpr std::uint64_t align(std::uint64_t bytes) {
-  return (bytes + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment;
-}
 
 // A material per use: triangles, leaves, or a level.
 constexpr int kTriangleMaterial = -2;
@@ -60,7 +43,7 @@ struct GlbPart {
     return index_count * (has_short_indices() ? sizeof(std::uint16_t) : sizeof(std::uint32_t));
   }
   [[nodiscard]] std::uint64_t end() const {
-    return align(offset + position_bytes() + index_bytes());
+    return chunk_bytes(offset + position_bytes() + index_bytes());
   }
   [[nodiscard]] std::string name() const { return group == nullptr ? "triangles" : group->name(); }
   [[nodiscard]] int material() const {
@@ -421,10 +404,8 @@ Status write_glb(const Shown& shown, bool solid_boxes, ByteSink& out) {
   const Result<std::vector<PlannedTree>> planned = plan(shown.trees, solid_boxes, binary_bytes);
   if (!planned) return planned.error();
   std::string json = Document(shown, *planned, solid_boxes, binary_bytes).text();
-  json.resize(align(json.size()), ' ');
-  constexpr std::uint64_t kHeaderBytes = 12;
-  constexpr std::uint64_t kChunkHeaderBytes = 8;
-  const std::uint64_t total = kHeaderBytes + kChunkHeaderBytes + json.size() +
+  json.resize(chunk_bytes(json.size()), ' ');
+  const std::uint64_t total = kGlbHeaderBytes + kChunkHeaderBytes + json.size() +
                               (binary_bytes > 0 ? kChunkHeaderBytes + binary_bytes : 0);
   if (total > std::numeric_limits<std::uint32_t>::max()) {
     return Error{Errc::kMeshTooLarge, "more than the 4 GiB that a GLB holds"};

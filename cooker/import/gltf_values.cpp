@@ -14,14 +14,12 @@
 #include "cooker/import/gltf_accessor.h"
 #include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_extensions.h"
+#include "cooker/import/gltf_numbers.h"
 #include "cooker/import/gltf_primitives.h"
 #include "cooker/import/transform_values.h"
 
 namespace boxtree::cooker {
 namespace {
-
-// Of modes (specification, 5.24.4); the last is that of fans.
-constexpr std::uint64_t kTriangles = 4, kTriangleFan = 6;
 
 // A value for a message.
 std::string shown(const Json& value) {
@@ -114,7 +112,7 @@ class ValueChecker {
     if (!is_object(primitive)) return false;
     const Json* const mode = primitive.find("mode");
     if (mode != nullptr &&
-        !(mode->is_number_unsigned() && mode->get<std::uint64_t>() <= kTriangleFan)) {
+        !(mode->is_number_unsigned() && mode->get<std::uint64_t>() <= kModeTriangleFan)) {
       return fail("mode", "0 to 6", shown(*mode));
     }
     const Json* const attributes = primitive.find("attributes");
@@ -131,8 +129,8 @@ class ValueChecker {
 
   // Of strips and fans assimp subtracts two.
   bool has_corners(const Json& primitive) {
-    const std::uint64_t mode = number_at(primitive, "mode", kTriangles);
-    if (mode <= kTriangles) return true;
+    const std::uint64_t mode = number_at(primitive, "mode", kModeTriangles);
+    if (mode <= kModeTriangles) return true;
     const Json& accessor = primitive.contains("indices")
                                ? accessor_at(document_, primitive, "indices")
                                : positions_of(document_, primitive);

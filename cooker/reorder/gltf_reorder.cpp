@@ -17,6 +17,7 @@
 #include "cooker/import/glb.h"
 #include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_nesting.h"
+#include "cooker/import/gltf_numbers.h"
 #include "cooker/import/gltf_primitives.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/reorder/reorder.h"
@@ -26,21 +27,6 @@
 
 namespace boxtree::cooker {
 namespace {
-
-// Numbers of the glTF 2.0 specification.
-constexpr std::uint32_t kGlbMagic = 0x46546c67u;  // "glTF"
-constexpr std::uint32_t kGlbVersion = 2;
-constexpr std::uint32_t kJsonChunk = 0x4e4f534au;    // "JSON"
-constexpr std::uint32_t kBinaryChunk = 0x004e4942u;  // "BIN"
-constexpr std::size_t kChunkHeaderBytes = 8;
-constexpr std::size_t kGlbHeaderBytes = 12;
-constexpr std::size_t kGlbAlignment = 4;
-constexpr std::uint64_t kUnsignedByte = 5121;
-constexpr std::uint64_t kUnsignedShort = 5123;
-constexpr std::uint64_t kUnsignedInt = 5125;
-constexpr std::uint64_t kElementArrayBuffer = 34963;
-constexpr std::uint64_t kModeTriangles = 4;
-constexpr std::uint64_t kModeTriangleFan = 6;
 
 constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
 
@@ -318,7 +304,7 @@ class GltfReorder {
     std::uint64_t buffer = 0;
     std::uint64_t offset = 0;
     if (is_binary_ && !binary_.empty() && first_buffer_is_chunk()) {
-      appended_at_ = offset = (binary_.size() + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment;
+      appended_at_ = offset = chunk_bytes(binary_.size());
       document_["buffers"][0]["byteLength"] = offset + numbers_.size();
     } else {
       buffer =
@@ -359,12 +345,12 @@ class GltfReorder {
 
   Status write_glb() {
     std::string json = document_.dump();
-    json.resize((json.size() + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment, ' ');
+    json.resize(chunk_bytes(json.size()), ' ');
     std::string chunk(binary_);
     if (appended_at_) {
       chunk.resize(*appended_at_);
       chunk += numbers_;
-      chunk.resize((chunk.size() + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment);
+      chunk.resize(chunk_bytes(chunk.size()));
     }
     const std::uint64_t bytes = kGlbHeaderBytes + kChunkHeaderBytes + json.size() +
                                 (chunk.empty() ? 0 : kChunkHeaderBytes + chunk.size());

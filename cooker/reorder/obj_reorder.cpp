@@ -44,7 +44,7 @@ static_assert(kStateKeywords[4].reset.substr(7) == kDefaultMaterial);
 using State = std::array<std::uint32_t, kStateKeywords.size()>;
 
 // Vertices, texture coordinates and normals before an element: negative numbers count from there.
-using Counts = std::array<std::uint64_t, 3>;
+using ElementCounts = std::array<std::uint64_t, 3>;
 
 std::string_view keyword_of(std::string_view statement) {
   return statement.substr(0, statement.find_first_of(" \t\\\r\n"));
@@ -158,7 +158,7 @@ class ObjReorder {
   }
 
   // A corner, its numbers counted from the first of the file: 7, 7/1, 7//2, 7/1/2.
-  void write_corner(std::string_view word, const Counts& counts) {
+  void write_corner(std::string_view word, const ElementCounts& counts) {
     if (word.find('-') == std::string_view::npos) {
       out_.print(" {}", word);
       return;
@@ -218,10 +218,10 @@ class ObjReorder {
   std::vector<Element> polygons_;  // three corners or more, by their number in the source
   std::vector<Element> others_;
   std::vector<State> states_;
-  std::vector<Counts> counts_;
+  std::vector<ElementCounts> counts_;
   State state_{};
   State written_{};
-  Counts counted_{};
+  ElementCounts counted_{};
   std::vector<std::string_view> texts_ = {{}};  // of statements; the first stands for none
   std::unordered_map<std::string, std::uint32_t> number_of_text_;
   std::vector<std::string> libraries_;
