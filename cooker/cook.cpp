@@ -71,9 +71,6 @@ class Cook {
       : input_(std::move(input)), profile_(profile), options_(options), progress_(progress) {}
 
   Result<CookedFile> run() {
-    for (const ImportReport& report : input_.imports) {
-      if (Status status = check_digits(report); !status) return status.error();
-    }
     if (Status status = plan(); !status) return status.error();
     if (Status status = try_meshes(); !status) return status.error();
     if (Status status = choose_encodings(); !status) return status.error();
@@ -97,6 +94,10 @@ class Cook {
     }
     if (!input_.has_top_level) {  // nothing is placed: the options decide
       plan_.meshes.resize(input_.scene.meshes.size());
+      for (std::size_t i = 0; i < input_.imports.size(); ++i) {
+        const Status status = check_digits(input_.scene.meshes[i].mesh, input_.imports[i]);
+        if (!status) return status;
+      }
       return {};
     }
     Result<ScenePlan> plan = plan_scene(input_.scene, profile_);
@@ -104,16 +105,31 @@ class Cook {
     plan_ = std::move(*plan);
     if (profile_.path.empty()) {
       apply_options(options_, plan_);
-    } else if (options_.import.precision == Precision::kF64) {
+      return check_digits_of_scene();
+    }
+    if (options_.import.precision == Precision::kF64) {
       keep_digits(plan_);
     }
     return {};
   }
 
   // A tolerance of the options; plan_scene checks those of a profile.
-  [[nodiscard]] Status check_digits(const ImportReport& report) const {
+  [[nodiscard]] Status check_digits(const SourceMesh& mesh, const ImportReport& report) const {
     if (!options_.grid.tolerance) return {};
-    return check_moved_by_f32(report, *options_.grid.tolerance);
+    return check_moved_by_f32(mesh, source_of(report).string(), *options_.grid.tolerance);
+  }
+
+  [[nodiscard]] Status check_digits_of_scene() const {
+    for (std::size_t i = 0; i < plan_.meshes.size(); ++i) {
+      if (!plan_.meshes[i].tolerance || plan_.meshes[i].external) continue;
+      const SourceMesh& mesh = input_.scene.meshes[i].mesh;
+      const std::string what = input_.imports.size() == 1
+                                   ? source_of(input_.imports.front()).string()
+                                   : "mesh \"" + mesh.name + '"';
+      const Status status = check_moved_by_f32(mesh, what, *plan_.meshes[i].tolerance);
+      if (!status) return status;
+    }
+    return {};
   }
 
   // Called for one mesh after another; may be called again for an imported mesh.
@@ -121,7 +137,7 @@ class Cook {
     if (!input_.importer || mesh < input_.imports.size()) return {};
     Result<Imported> imported = input_.importer(mesh);
     if (!imported) return imported.error();
-    if (Status status = check_digits(imported->report); !status) return status;
+    if (Status status = check_digits(imported->mesh, imported->report); !status) return status;
     input_.scene.meshes[mesh].mesh = std::move(imported->mesh);
     std::vector<FaceRun>& runs = input_.scene.meshes[mesh].materials;
     runs = std::move(imported->materials.runs);

@@ -253,10 +253,12 @@ Result<Imported> read_mesh(const std::filesystem::path& path, const ReportArgume
   options.skip_bad = arguments.skip_bad;
   options.command = "report";
   if (arguments.f64) options.precision = Precision::kF64;
+  options.count_moves = arguments.tolerance.has_value();
   Result<Imported> imported = import_mesh(path, options);
   if (!imported) return imported.error();
   if (arguments.tolerance) {
-    const Status status = check_moved_by_f32(imported->report, *arguments.tolerance);
+    const Status status = check_moved_by_f32(imported->mesh, source_of(imported->report).string(),
+                                             *arguments.tolerance);
     if (!status) return status.error();
   }
   for (const std::string& warning : warnings_of(imported->report)) warn(warning);

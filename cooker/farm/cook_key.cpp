@@ -62,8 +62,8 @@ Json form_of(const SearchOptions& search) {
 }
 
 Json form_of(const ImportOptions& import) {
-  const auto& [skip_bad, command, precision, keep_doubles, try_first, keep_polygon_corners,
-               materials, user_data, face_ids, bytes] = import;
+  const auto& [skip_bad, command, precision, keep_doubles, count_moves, try_first,
+               keep_polygon_corners, materials, user_data, face_ids, bytes] = import;
   return {{"skip_bad", skip_bad},
           {"precision", precision_name(precision)},
           {"keep_doubles", keep_doubles},

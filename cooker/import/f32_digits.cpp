@@ -89,13 +89,12 @@ std::string cook_remedy_of(F32Loss loss) {
   return (loss == F32Loss::kReader ? "" : "cook ") + remedy_of(loss);
 }
 
-Status check_moved_by_f32(const ImportReport& report, double tolerance) {
-  if (report.moved_by_f32 <= tolerance) return {};
+Status check_moved_by_f32(const SourceMesh& mesh, std::string_view what, double tolerance) {
+  if (mesh.moved_by_f32 <= tolerance) return {};
   return Error{Errc::kMeshUnsupported,
                fmt::format("{}: f32 moves a vertex by up to {:.3g}, farther than the tolerance of "
                            "{}; {}",
-                           source_of(report).string(), report.moved_by_f32, tolerance,
-                           remedy_of(report.f32_loss))};
+                           what, mesh.moved_by_f32, tolerance, remedy_of(mesh.f32_loss))};
 }
 
 }  // namespace boxtree::cooker

@@ -41,8 +41,9 @@ static_assert(2 * kUnderflowF32 == std::numeric_limits<float>::denorm_min());
 /// The same where another command is run: "cook --f64 keeps all digits".
 [[nodiscard]] std::string cook_remedy_of(F32Loss loss);
 
-/// kMeshUnsupported if f32 has moved a vertex farther than a tolerance, which is for what the
-/// source says.
-Status check_moved_by_f32(const ImportReport& report, double tolerance);
+/// kMeshUnsupported if f32 has moved a vertex of a mesh, in errors `what`, farther than a
+/// tolerance, which is for what the source says. Precondition: imported with
+/// ImportOptions::count_moves.
+Status check_moved_by_f32(const SourceMesh& mesh, std::string_view what, double tolerance);
 
 }  // namespace boxtree::cooker

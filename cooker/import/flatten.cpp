@@ -309,14 +309,17 @@ Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses
 
 // What is too little to be told is told of neither.
 template <class T>
-void state_moves(const Flattener<T>& flattener, Imported& out) {
+void state_moves(const Flattener<T>& flattener, bool count_all, Imported& out) {
   const double unnoticed = unnoticed_move(out.mesh.positions);
   const double moved = flattener.moved() + flattener.moved_by_reader();
-  if (moved <= unnoticed) return;
-  const bool is_of_reader = flattener.moved_by_reader() > unnoticed;
-  out.report.f32_loss = out.mesh.f32_loss = is_of_reader ? F32Loss::kReader : F32Loss::kNodes;
-  out.report.moved_by_f32 = std::max(out.report.moved_by_f32, moved);
+  const bool is_told = moved > unnoticed;
+  if (!is_told && !count_all) return;
+  const bool is_of_reader = flattener.moved_by_reader() > (is_told ? unnoticed : moved / 2);
+  out.mesh.f32_loss = is_of_reader ? F32Loss::kReader : F32Loss::kNodes;
   out.mesh.moved_by_f32 = moved;
+  if (!is_told) return;
+  out.report.f32_loss = out.mesh.f32_loss;
+  out.report.moved_by_f32 = std::max(out.report.moved_by_f32, moved);
 }
 
 }  // namespace
@@ -339,11 +342,11 @@ Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances
   if (positions.precision == Precision::kF32) {
     Flattener<float> flattener(context, positions.f32, out);
     status = flatten(scene, instances, uses, context, flattener, materials, out.user_data);
-    state_moves(flattener, out);
+    state_moves(flattener, context.options.count_moves, out);
   } else {
     Flattener<double> flattener(context, positions.f64, out);
     status = flatten(scene, instances, uses, context, flattener, materials, out.user_data);
-    state_moves(flattener, out);
+    state_moves(flattener, context.options.count_moves, out);
   }
   if (!status.ok()) return status;
   return check_split_count(out.mesh.faces.size(), context.file);

@@ -70,7 +70,7 @@ SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::
 Status measure_digits(const MeshReader& reader, const Request& request, Imported& mesh) {
   const Positions& positions = mesh.mesh.positions;
   if (positions.precision != Precision::kF32 || mesh.report.has_f32_alone ||
-      !may_have_moved(positions)) {
+      !(request.options.count_moves || may_have_moved(positions))) {
     return {};
   }
   ImportOptions options = request.options;
@@ -81,7 +81,9 @@ Status measure_digits(const MeshReader& reader, const Request& request, Imported
     return status;
   }
   const double moved = moved_by_f32(exact.mesh.positions);
-  if (moved > unnoticed_move(positions)) mesh.report.moved_by_f32 = mesh.mesh.moved_by_f32 = moved;
+  const bool is_told = moved > unnoticed_move(positions);
+  if (is_told) mesh.report.moved_by_f32 = moved;
+  if (is_told || request.options.count_moves) mesh.mesh.moved_by_f32 = moved;
   return {};
 }
 

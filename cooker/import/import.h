@@ -32,6 +32,9 @@ struct ImportOptions {
   /// [false] Take kF64 for a PLY file whose coordinates are doubles, if f32 does not hold all of
   /// them.
   bool keep_doubles = false;
+  /// [false] State in SourceMesh::moved_by_f32 what is too little to be told, too, for a caller
+  /// that has a tolerance. Costs a second reading of texts and of doubles in PLY files.
+  bool count_moves = false;
   /// [false] Let assimp read the file in a copy of this process first (trial.h). A file that
   /// crashes assimp's reader or makes it loop forever is then an error: kImportFailed. Costs a
   /// second reading. No effect on formats that assimp does not read. The copy is made by fork(): do
@@ -98,7 +101,8 @@ struct ImportReport {
   std::size_t degenerate_faces = 0;  // zero area; kept
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
   /// Text and PLY read as f32, and meshes that nodes place in f32: how far a vertex was moved by
-  /// that, at most; 0 if no farther than unnoticed_move (f32_digits.h). The mesh has it, too.
+  /// that, at most; 0 if no farther than unnoticed_move (f32_digits.h). The mesh has it, too, and
+  /// with ImportOptions::count_moves what is less.
   double moved_by_f32 = 0;
   F32Loss f32_loss = F32Loss::kDigits;  // of moved_by_f32
   /// With kF64: it keeps no more than kF32, since the coordinates are f32 in the file or by its

@@ -74,7 +74,8 @@ struct SourceMesh {
   /// Of each face, which corners of its source polygon it has, from 0; the last is kNoCorner for a
   /// triangle. Empty unless import was told to keep it (ImportOptions::keep_polygon_corners).
   std::vector<std::array<std::uint32_t, 4>> polygon_corners;
-  /// How far f32 moved a vertex at most from what the source says (ImportReport::moved_by_f32).
+  /// How far f32 moved a vertex at most from what the source says (ImportReport::moved_by_f32 and
+  /// ImportOptions::count_moves).
   double moved_by_f32 = 0;
   F32Loss f32_loss = F32Loss::kDigits;
 

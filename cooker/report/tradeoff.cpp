@@ -15,6 +15,7 @@
 
 #include "cooker/choose/measure.h"
 #include "cooker/choose/search.h"
+#include "cooker/import/f32_digits.h"
 #include "cooker/import/file_error.h"
 #include "cooker/report/scratch_file.h"
 #include "cooker/write/file_writer.h"
@@ -164,7 +165,8 @@ class Measurement {
     out_.vertices = mesh.positions.size();
     out_.diagonal = bounds_of(mesh).diagonal().norm();
     out_.is_f64 = mesh.positions.precision == Precision::kF64;
-    out_.moved_by_f32 = mesh.moved_by_f32;
+    const bool is_told = mesh.moved_by_f32 > unnoticed_move(mesh.positions);
+    out_.moved_by_f32 = is_told ? mesh.moved_by_f32 : 0;
     out_.f32_loss = mesh.f32_loss;
     out_.tolerance = options.tolerance;
     if (options.tolerance) {

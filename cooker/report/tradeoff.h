@@ -87,7 +87,7 @@ struct MeshTradeoff {
   double diagonal = 0;                  // of the bounds, object space
   std::uint64_t skipped = 0;            // bad faces that --skip-bad left out
   bool is_f64 = false;                  // its positions
-  double moved_by_f32 = 0;              // SourceMesh::moved_by_f32
+  double moved_by_f32 = 0;              // ImportReport::moved_by_f32
   F32Loss f32_loss = F32Loss::kDigits;  // of moved_by_f32
   std::optional<double> tolerance;      // of TradeoffOptions
   double tolerance_left = 0;            // of it for moves of the surface; share of the diagonal

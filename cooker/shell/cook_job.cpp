@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cooker/shell/cook_job.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -24,6 +25,12 @@ std::array<Output, 3> output_files(const CookJob& job) {
   return {{{job.output_stream ? fs::path() : job.output},
            {job.depfile, "--depfile"},
            {job.reordered, "--write-reordered"}}};
+}
+
+// Whether an object of the profile bounds how far vertices may move.
+bool has_tolerance(const Profile& profile) {
+  return std::any_of(profile.objects.begin(), profile.objects.end(),
+                     [](const ProfileObject& o) { return o.needs.tolerance || o.needs.contact; });
 }
 
 class Job {
@@ -61,6 +68,7 @@ class Job {
       profile_ = std::move(*profile);
       if (profile_.user_data) options_.import.user_data = profile_.user_data->value;
     }
+    options_.import.count_moves = options_.grid.tolerance || has_tolerance(profile_);
     return {};
   }
 

@@ -58,7 +58,7 @@ same "$(jq -c '[.hit,.t,.face]' out)" '[true,4,1]'
 sed 's/^v 1 /v 1.1 /' cube.obj >uneven.obj
 expect 0 "$boxtree" cook uneven.obj cube.obj -o grid.bxt --tolerance 0.01 --json
 jq -e '[.trees[].candidates[] | select(.geometry == "grid") | .error.max_vertex_error] | .[0] > 0 and max <= 0.01' out >/dev/null
-same "$(jq -c '[.trees[].candidates[] | select(.geometry == "exact") | .error.max_vertex_error] | unique' out)" '[0]'
+same "$(jq -c '[.trees[].candidates[] | select(.geometry == "exact") | .error.max_vertex_error] | unique' out)" '[0,2.3841857821338408e-08]' # f32 takes that of 1.1
 # One geometry for all trees of a file.
 same "$(jq -r '[.trees[].chosen_geometry] | unique | length' out)" 1
 expect 0 "$boxtree" info grid.bxt --json
@@ -936,6 +936,11 @@ expect 0 "$boxtree" cook pentagon.obj -o pentagon.bxt --external -q --write-reor
 expect 0 "$boxtree" verify pentagon.bxt --mesh parted.obj
 expect 0 "$boxtree" query cube.bxt pair external.bxt --mesh2 cube.obj --json
 same "$(jq -c '.hit' out)" true
+# Found by an oracle: a line's mesh was not looked at where an earlier one had named the right one.
+pair='{"kind":"distance","file":"external.bxt","pose":[0,0,20]'
+printf '%s\n' "$pair,\"mesh\":\"cube.obj\"}" "$pair,\"mesh\":\"none.obj\"}" "$pair,\"mesh\":\"other.obj\"}" "$pair}" >meshes.jsonl
+expect 2 "$boxtree" query cube.bxt --batch meshes.jsonl
+same "$(jq -c '.error // (.upper | floor)' out | tr '\n' ' ')" '19 "file_not_found" "external_mesh_mismatch" "external_mesh_needed" '
 
 # Batches: JSON lines, or one document; a bad line gets an error in its place.
 cat >queries.jsonl <<'BATCH'
@@ -1280,6 +1285,17 @@ jq -e '.trees[0].import.moved_by_f32 | . > 0.2 and . < 0.3' out >/dev/null
 expect 5 "$boxtree" cook far.obj -o far.bxt -q --tolerance 0.001
 same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 keeps all digits'
 expect 5 "$boxtree" cook far.obj cube.obj -o far.bxt -q --tolerance 0.001
+# Found by an oracle: what is too little to be told was farther than a tolerance, too.
+printf 'v 0 0 0\nv 999.9999 0 0\nv 0 1 0\nf 1 2 3\n' >long.obj
+printf '[scene]\nsource = "long.obj"\ntolerance = 1e-6\n' >long.toml
+expect 0 "$boxtree" cook long.obj -o long.bxt -q
+same "$(cat err)" ''
+for options in 'long.obj --tolerance 1e-6' 'long.obj --scene --tolerance 1e-6' '--profile long.toml'; do
+  expect 5 "$boxtree" cook $options -o long.bxt -q
+  grep -q '^boxtree: mesh_unsupported: .* f32 moves a vertex .*by up to 2.21e-05, farther than .*--f64 keeps all digits$' err
+  expect 0 "$boxtree" cook $options -o long.bxt -q --f64
+done
+expect 5 "$boxtree" report long.obj -o long.html -q --quick --tolerance 1e-6
 # What f32 took counts: in the file, and of a profile's tolerance.
 expect 0 "$boxtree" cook far.obj -o far.bxt -q --tolerance 0.3 --json
 jq -e '.trees[0].candidates | all(.error.max_vertex_error > 0.2 and .error.max_vertex_error <= 0.3)' out >/dev/null

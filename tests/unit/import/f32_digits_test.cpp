@@ -65,10 +65,35 @@ TEST_F(F32DigitsTest, MeasuresWhatF32MovesOfMeshesThatNodesPlace) {
   EXPECT_EQ(placed.report.moved_by_f32, 0.25);
   EXPECT_EQ(placed.mesh.moved_by_f32, 0.25);
   EXPECT_EQ(placed.report.f32_loss, F32Loss::kNodes);
-  EXPECT_TRUE(check_moved_by_f32(placed.report, 0.25).ok());
-  EXPECT_EQ(check_moved_by_f32(placed.report, 0.2).code(), Errc::kMeshUnsupported);
+  EXPECT_TRUE(check_moved_by_f32(placed.mesh, "placed.gltf", 0.25).ok());
+  EXPECT_EQ(check_moved_by_f32(placed.mesh, "placed.gltf", 0.2).code(), Errc::kMeshUnsupported);
   EXPECT_EQ(load_placed(far.c_str(), Precision::kF64).report.moved_by_f32, 0);
   EXPECT_EQ(load_placed("[4, 8, 0]", Precision::kF32).report.moved_by_f32, 0);
+}
+
+// Found by an oracle: a mesh of a thousand metres kept a tolerance of 10^-6 without having it.
+TEST_F(F32DigitsTest, CountsWhatIsTooLittleToTell) {
+  const auto long_edge = std::string("v 0 0 0\nv 999.9999 0 0\nv 0 1 0\n") + kTriangle;
+  const double lost = std::abs(999.9999 - double{999.9999f});
+  ImportOptions counting;
+  counting.count_moves = true;
+  const Imported counted = load("long.obj", long_edge, counting);
+  EXPECT_EQ(counted.mesh.moved_by_f32, lost);
+  EXPECT_EQ(counted.report.moved_by_f32, 0);
+  EXPECT_EQ(load("long.obj", long_edge).mesh.moved_by_f32, 0);
+  EXPECT_EQ(check_moved_by_f32(counted.mesh, "long.obj", 1e-6).code(), Errc::kMeshUnsupported);
+
+  GltfText gltf;
+  gltf.add_mesh("tile", {{{0, 0, 0, 1000, 0, 0, 0, 1, 0}}});
+  const auto placed = [&](const ImportOptions& options) {
+    return load("placed.gltf", gltf.text(R"({"mesh":0,"translation":[0.1,0,0]})"), options);
+  };
+  // And at most what any number of the text lost, here 0.1.
+  const double moved = placed(counting).mesh.moved_by_f32, at_least = 1000.1 - double{1000.1f};
+  EXPECT_GE(moved, std::abs(at_least));
+  EXPECT_LE(moved, std::abs(at_least) + 1e-8);
+  EXPECT_EQ(placed(counting).report.moved_by_f32, 0);
+  EXPECT_EQ(placed({}).mesh.moved_by_f32, 0);
 }
 
 TEST_F(F32DigitsTest, ReadsTheDigitsOfTextStl) {
@@ -100,8 +125,8 @@ TEST_F(F32DigitsTest, MeasuresWhatUnderflowMoves) {
   const Imported point = load("point.obj", tiny("1e-50"));
   EXPECT_DOUBLE_EQ(point.report.moved_by_f32, 1e-50);
   EXPECT_EQ(point.mesh.moved_by_f32, point.report.moved_by_f32);
-  EXPECT_EQ(check_moved_by_f32(point.report, 1e-51).code(), Errc::kMeshUnsupported);
-  EXPECT_TRUE(check_moved_by_f32(point.report, 1e-49).ok());
+  EXPECT_EQ(check_moved_by_f32(point.mesh, "point.obj", 1e-51).code(), Errc::kMeshUnsupported);
+  EXPECT_TRUE(check_moved_by_f32(point.mesh, "point.obj", 1e-49).ok());
   // 21 of the smallest number, 2^-149, are 2.94e-44.
   const Imported few = load("few.obj", tiny("3e-44"));
   EXPECT_DOUBLE_EQ(few.report.moved_by_f32, 3e-44 - 21 * 0x1p-149);
