@@ -88,7 +88,7 @@ std::optional<PlacementBounds> Placement::bounds(const Box<double>& root) const 
 // coordinate is spread by |L| |L^-1|, whose rounding and that of the comparison itself are counted
 // generously: 64 roundings in all.
 double PlacementBounds::error() const noexcept {
-  return 64 * kRoundoffF64 * condition * magnitude + std::numeric_limits<double>::min();
+  return 64 * kRoundoffF64 * condition * magnitude + kLeastError;
 }
 
 Ray Placement::to_object(const Ray& world) const noexcept {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Core>
@@ -30,6 +31,8 @@ struct PlacementBounds {
   /// Upper bound, on any axis and in the world, of the rounding of what is compared with the tree:
   /// on the way to the world, or back to where the tree compares it.
   [[nodiscard]] double error() const noexcept;
+  /// error() of a tree that is the origin.
+  static constexpr double kLeastError = std::numeric_limits<double>::min();
 };
 
 /// A tree and its pose. The world coordinates of a triangle are to_world().apply() of each corner

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "format/limits.h"
+#include "runtime/scene/placement.h"
 
 namespace boxtree {
 namespace {
@@ -26,7 +27,8 @@ Frame frame_around(std::span<const Box<double>> boxes, int& exponent) noexcept {
     middle[k] = bounds.low[k] / 2 + bounds.high[k] / 2;
     largest = std::max(largest, bounds.high[k] / 2 - bounds.low[k] / 2);
   }
-  if (largest > 0) {
+  if (largest >
+      PlacementBounds::kLeastError) {  // else a point at the origin, by whose box is wider
     static_cast<void>(std::frexp(largest, &exponent));  // largest < 2^exponent; half an extent
     exponent = std::clamp(exponent + 1 - kExtentExponent, -kMaxScaleExponent, kMaxScaleExponent);
   }

@@ -98,6 +98,28 @@ TEST_P(SceneRange, PowersOfTwoScaleAllAnswers) {
   }
 }
 
+// Found by an oracle: the box around such a point, wider by the least number, was taken for its
+// extent.
+TEST_P(SceneRange, APointAtTheOriginIsFound) {
+  test::SourceMesh point;
+  point.positions.f32 = {0, 0, 0};
+  point.faces = {{{0, 0, 0, cooker::kNoCorner}}};
+  for (const bool moves : {false, true}) {
+    SCOPED_TRACE(moves);
+    cooker::SceneParts parts = test::random_parts(1, 1, 1, 1, 11);
+    parts.instances[0].pose = Pose::Identity();
+    parts.instances[0].moves = moves;
+    const CookedScene cooked = test::cook_scene({point}, parts, {GetParam()});
+    const Scene scene = require(Scene::bind(cooked.file));
+    EXPECT_EQ(require(closest_point(scene, {0, 0, 0})).value().distance, 0);
+    EXPECT_EQ(require(closest_point(scene, {2, 3, 6})).value().distance, 7);
+    std::size_t touched = 0;
+    const auto count = [&](const SceneFace&) { return ++touched > 0; };
+    EXPECT_EQ(require(overlap_sphere(scene, {2, 3, 6}, 7, count)), Visit::kComplete);
+    EXPECT_EQ(touched, 1u);
+  }
+}
+
 // A moving instance of any size among others of size 1: against brute force in the world.
 TEST_P(SceneRange, OneInstanceOfAnySize) {
   std::mt19937_64 random(3);
