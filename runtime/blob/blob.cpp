@@ -26,7 +26,13 @@ Result<Bytes> blob_section(Bytes file) {
   }
   const SectionEntry* entry = container->find(SectionKind::kBlob, kNoOwner);
   if (entry == nullptr) return Error{Errc::kSectionMissing, "the blob has no section \"blob\""};
-  return file.subspan(entry->offset, entry->size);
+  // All of a blob is read anyway, so that no changed bit of it remains unseen.
+  if (Status status = check_padding(file, *container); !status) return status.error();
+  const Bytes section = file.subspan(entry->offset, entry->size);
+  if (checksum(section) != entry->checksum) {
+    return section_error(SectionKind::kBlob, {Errc::kChecksumMismatch, "checksum differs"});
+  }
+  return section;
 }
 
 Status decompress(BlobMethod method, Bytes stream, std::span<std::byte> out, std::uint64_t limit) {

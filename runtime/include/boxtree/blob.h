@@ -20,7 +20,8 @@ inline constexpr std::uint64_t kDefaultBlobMemory = std::uint64_t{1} << 30;
 /// size that the blob states is compared with `memory_limit` before anything is allocated, and no
 /// more is ever produced, whatever the stream holds.
 /// Errors: as File::open(); kFeatureUnsupported when the file is no blob; kBlobLimit; kBlobCorrupt
-/// when the stream is truncated, damaged or not as long as stated. Thread-safe.
+/// when the stream is truncated, damaged or not as long as stated. A changed bit anywhere in the
+/// blob is one of these, kChecksumMismatch or kPaddingNotZero. Thread-safe.
 BOXTREE_API Result<File> open_blob(const std::string& path,
                                    std::uint64_t memory_limit = kDefaultBlobMemory);
 

@@ -86,6 +86,17 @@ TEST_P(Blobs, EveryTruncationIsRefused) {
   }
 }
 
+TEST_P(Blobs, EveryFlippedBitIsFound) {
+  for (std::size_t i = 0; i < blob_.size(); ++i) {
+    const std::byte kept = blob_[i];
+    for (int bit = 0; bit < 8; ++bit) {
+      blob_[i] = kept ^ std::byte(1u << bit);
+      ASSERT_FALSE(open_blob(blob_).ok()) << "byte " << i << ", bit " << bit;
+    }
+    blob_[i] = kept;
+  }
+}
+
 TEST_P(Blobs, EveryDamagedByteIsFound) {
   const SectionEntry section = test::sections_of(blob_).front();
   for (std::size_t i = 0; i < blob_.size(); i += 5) {
