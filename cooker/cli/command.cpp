@@ -2,8 +2,10 @@
 #include "cooker/cli/command.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <type_traits>
 #include <utility>
@@ -32,6 +34,14 @@ std::vector<std::string> split_list(const std::string& text) {
     }
   }
   return words;
+}
+
+// A number as vectors of options, batches and meshes write it: not "0x10" or "+1", and of double.
+std::optional<double> number_in(const std::string& text) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && last == end ? std::optional(number) : std::nullopt;
 }
 
 // "FILE" for a positional, "--output" for an option.
@@ -169,11 +179,12 @@ void Option::expect_number() {
   is_allowed_ = [](double value) { return !std::is_unsigned_v<T> || value >= 0; };
   parsed_->check(CLI::Validator(
       [this](std::string& text) {
-        T converted{};
-        double value = 0;
-        const bool is_number =
-            CLI::detail::lexical_cast(text, converted) && CLI::detail::lexical_cast(text, value);
-        return is_number && is_allowed_(value)
+        std::optional<double> value = number_in(text);
+        if constexpr (!std::is_floating_point_v<T>) {
+          T converted{};
+          if (!CLI::detail::lexical_cast(text, converted)) value.reset();
+        }
+        return value && is_allowed_(*value)
                    ? std::string()
                    : fmt::format("expected {}, found \"{}\"", expected_, text);
       },
@@ -345,12 +356,15 @@ Option* Command::add_option(const std::string& name, T& out, const std::string& 
         },
         help));
   }
-  Option* const option = add(app_->add_option(name, out, help));
-  if constexpr (std::is_arithmetic_v<T>) {
-    option->expect_number<T>();
-  } else if constexpr (std::is_same_v<T, std::optional<double>>) {
+  if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>) {
+    // CLI11 reads numbers as long double, and rounds them twice.
+    Option* const option = add(app_->add_option_function<std::string>(
+        name, [&out](const std::string& text) { out = number_in(text).value(); }, help));
     option->expect_number<double>();
+    return option;
   }
+  Option* const option = add(app_->add_option(name, out, help));
+  if constexpr (std::is_arithmetic_v<T>) option->expect_number<T>();
   return option;
 }
 

@@ -334,7 +334,10 @@ std::string expectation(std::string_view kind, std::string_view argument) {
     return fmt::format("direction: expected finite{}",
                        kind == RayRequest::kKind ? " and not zero" : "");
   }
-  if (argument == "t_max") return "t_max: expected 0 or more";  // t_min is 0 here
+  // t_min is 0 here; the library knows no merge.
+  if (argument == "t_max" || argument == "merge") {
+    return fmt::format("{}: expected 0 or more", argument);
+  }
   const std::string_view expected = expected_of(argument);
   if (argument == "distance") return fmt::format("within: expected {}", expected);
   if (expected.empty()) return fmt::format("{} is not valid", argument);
@@ -408,7 +411,8 @@ Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
 }
 
 Result<const Tree*> TreeCache::get(const SecondTree& second) {
-  std::unique_ptr<OpenedTree>& place = opened_[{second.file.string(), second.tree}];
+  std::unique_ptr<OpenedTree>& place =
+      opened_[{second.file.string(), second.tree, second.mesh.string()}];
   if (place == nullptr) {
     Result<OpenedFile> file = open_file(second.file);
     if (!file) return file.error();

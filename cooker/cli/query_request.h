@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -382,7 +383,8 @@ class TreeCache {
   Result<const Tree*> get(const SecondTree& second);
 
  private:
-  std::map<std::pair<std::string, WhichTree>, std::unique_ptr<OpenedTree>> opened_;
+  // By file, tree and mesh: another mesh may be the wrong one.
+  std::map<std::tuple<std::string, WhichTree, std::string>, std::unique_ptr<OpenedTree>> opened_;
 };
 
 /// The points of a mesh, each once, for a ConvexHull; an error where these are too many.

@@ -56,8 +56,9 @@ class PolygonSplitter {
   /// n corners give n - 2 triangles of corner numbers, in the winding of the polygon; every edge of
   /// the polygon is an edge of one of them. A simple polygon, convex or not, is covered exactly
   /// once as seen along its normal. A degenerate or self-crossing polygon gets triangles over all
-  /// its corners. A quad without a reflex corner becomes (0,1,2), (0,2,3). The result is valid
-  /// until the next call. Precondition: n >= 3, coordinates finite.
+  /// its corners. A quad without a reflex corner, as seen along the axis to which its normal is
+  /// closest, becomes (0,1,2), (0,2,3). The result is valid until the next call. Precondition: n >=
+  /// 3, coordinates finite.
   ///
   /// O(n log n), except for large, nearly empty ears beside many reflex corners: each is tested
   /// against the reflex corners in the grid cells that its bounds cover. After kMaxTests

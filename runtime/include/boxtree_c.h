@@ -412,7 +412,8 @@ typedef struct bxt_tree_options {
 /// Makes tree `number` of a file ready for queries, at a cost that does not depend on its size but
 /// for `verify_mesh`. `options` may be NULL. Errors: BXT_TREE_INDEX (also of BXT_ONLY_TREE where
 /// there are several, or a scene), 20, 21, 30 to 32, BXT_PART_LEFT_OUT,
-/// BXT_EXTERNAL_MESH_NEEDED, BXT_EXTERNAL_MESH_MISMATCH, BXT_OUT_OF_MEMORY.
+/// BXT_EXTERNAL_MESH_NEEDED, BXT_EXTERNAL_MESH_MISMATCH, BXT_VERTEX_OUT_OF_RANGE (with
+/// `verify_mesh`), BXT_OUT_OF_MEMORY.
 BXT_API bxt_status bxt_tree_bind(const bxt_file* file, uint32_t number,
                                  const bxt_tree_options* options, bxt_tree** tree,
                                  bxt_error* error);
