@@ -654,6 +654,12 @@ misvalued 'usage: cook: --exact: expected no value, found "maybe"' cook cube.obj
 misvalued 'usage: query cast: --box: expected HX,HY,HZ, found "1"; write it with commas, without spaces' query cube.bxt cast --box 1
 misvalued 'usage: query cast: --rotation: expected X,Y,Z,W, found "0,0,0,1,2"' query cube.bxt cast --rotation 0,0,0,1,2
 misvalued 'usage: query ray: --t-max: expected a number, found "far"' query cube.bxt ray --origin 0,0,9 --direction 0,0,1 --t-max far
+# Found by an oracle: options took numbers that vectors and batches do not, and rounded them twice.
+for number in 0x10 +1 1e400 1e-400 '1 ' ''; do
+  misvalued "usage: query ray: --t-max: expected a number, found \"$number\"" query cube.bxt ray --origin 0,0,9 --direction 0,0,-1 --t-max "$number"
+done
+expect 0 "$boxtree" query cube.bxt ray --origin 0,0,9 --direction 0,0,-1 --t-max inf
+misvalued 'invalid_query: cube.bxt: collide: merge: expected 0 or more, found at [0,0,0], sphere 1, merge -1' query cube.bxt collide --sphere 1 --at 0,0,0 --merge -1
 for value in 1.5 -1 x; do
   misvalued "usage: query point: --budget: expected a whole number of 0 or more, found \"$value\"" query cube.bxt point --at 0,0,0 --budget=$value
 done
