@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# From a fresh Debian 12 to answered queries: installs what is missing, builds (two to four minutes on two
+# From a fresh Debian 12 to answered queries: installs what is missing, builds (three minutes on two
 # cores), cooks real meshes from Debian's own packages, queries them, and writes a report page.
 set -euo pipefail
 cd "$(dirname "$0")/.."
