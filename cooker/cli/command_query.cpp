@@ -42,6 +42,7 @@ struct QueryArguments {
   std::string tree;   // empty: the scene of the file, or else its first tree
   std::string scene;  // a tree of the scene to query; empty: the file's
   std::vector<std::string> moves;
+  std::vector<std::string> layers;  // names; empty: all
   std::filesystem::path mesh;
   std::filesystem::path batch;
   bool json = false;
@@ -305,6 +306,9 @@ int run(const QueryArguments& arguments, const RequestDefaults& defaults) {
   if (!arguments.moves.empty() && (!file.has_scene() || !arguments.tree.empty())) {
     return usage("query: --move is for instances of a scene");
   }
+  if (!arguments.layers.empty() && (!file.has_scene() || !arguments.tree.empty())) {
+    return usage("query: --layer is for instances of a scene");
+  }
   const auto answer_all = [&](const AnswerRequest& answer_request) {
     if (!arguments.batch.empty()) return run_batch(arguments, answer_request, defaults);
     TreeCache others;
@@ -324,6 +328,8 @@ int run(const QueryArguments& arguments, const RequestDefaults& defaults) {
                                      input_name(arguments.file), scene.error().detail)});
     }
     if (!scene) return fail(in_queried_file(arguments, {}, scene.error()));
+    const Result<LayerMask> layers = layers_named(scene->scene, arguments.layers);
+    if (!layers) return fail(in_queried_file(arguments, {}, layers.error()));
     StillSceneWarning still(arguments);
     std::set<std::string> told;
     const auto tell_hidden = [&](const std::vector<std::string>& moves) {
@@ -334,15 +340,16 @@ int run(const QueryArguments& arguments, const RequestDefaults& defaults) {
     tell_hidden(arguments.moves);
     return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
       if (line.moves.empty()) {
-        return still.told(answer(scene->file, scene->scene, line.request, others), scene->scene,
-                          line.request);
+        return still.told(answer(scene->file, scene->scene, *layers, line.request, others),
+                          scene->scene, line.request);
       }
       std::vector<std::string> moves = arguments.moves;
       moves.insert(moves.end(), line.moves.begin(), line.moves.end());
       const Result<Scene> moved = move_scene(scene->file, moves);
       if (!moved) return moved.error();
       tell_hidden(line.moves);
-      return still.told(answer(scene->file, *moved, line.request, others), *moved, line.request);
+      return still.told(answer(scene->file, *moved, *layers, line.request, others), *moved,
+                        line.request);
     });
   }
   const Result<OpenedTree> tree =
@@ -569,6 +576,11 @@ void add_query_command(Command& program, int& status) {
           "pose replaces its whole pose: X,Y,Z is one without rotation and scale; 12 "
           "numbers, a 3x4 matrix row by row, keep them")
       ->type_name("INSTANCE=POSE");
+  command
+      .add_option("--layer", arguments->layers,
+                  "Of a scene, as often as needed: answer for instances of this layer alone, by "
+                  "its name (info lists them) [all]")
+      ->type_name("NAME");
   Option* batch = command.add_file(
       "--batch", arguments->batch, Values::kFiles,
       "Query every line of a file (- for standard input): JSON objects with the names of the "

@@ -65,6 +65,11 @@ struct TreeKinds {
   using OfShape = Contact;
   using Options = FaceOptions;
 
+  template <class Shape>
+  static Result<Visit> collide(const Tree& tree, const Shape& shape, ContactVisitor visitor,
+                               const FaceOptions& options) {
+    return boxtree::collide(tree, shape, visitor, options.limits);
+  }
   template <class Hit>
   static void add_face(const Tree& tree, const Hit& hit, Json& json) {
     cooker::add_face(tree, hit.face, json);

@@ -51,6 +51,11 @@ struct SceneKinds {
   using OfShape = SceneContact;
   using Options = SceneFaceOptions;
 
+  template <class Shape>
+  static Result<Visit> collide(const Scene& scene, const Shape& shape, SceneContactVisitor visitor,
+                               const SceneFaceOptions& options) {
+    return boxtree::collide(scene, shape, visitor, options.layers, options.limits);
+  }
   template <class Hit>
   static void add_face(const Scene& scene, const Hit& hit, Json& json) {
     cooker::add_face(scene, {hit.instance, hit.face}, json);
@@ -66,14 +71,20 @@ struct SceneKinds {
   }
 };
 
-Result<Json> answer(const Scene& scene, const RayRequest& request) {
-  return ShapeAnswers<SceneKinds>(scene).answer(request);
+SceneFaceOptions of_layers(LayerMask layers) {
+  SceneFaceOptions options;
+  options.layers = layers;
+  return options;
 }
-Result<Json> answer(const Scene& scene, const CastRequest& request) {
-  return ShapeAnswers<SceneKinds>(scene).answer(request);
+
+Result<Json> answer(const Scene& scene, LayerMask layers, const RayRequest& request) {
+  return ShapeAnswers<SceneKinds>(scene, of_layers(layers)).answer(request);
 }
-Result<Json> answer(const Scene& scene, const CollideRequest& request) {
-  return ShapeAnswers<SceneKinds>(scene).answer(request);
+Result<Json> answer(const Scene& scene, LayerMask layers, const CastRequest& request) {
+  return ShapeAnswers<SceneKinds>(scene, of_layers(layers)).answer(request);
+}
+Result<Json> answer(const Scene& scene, LayerMask layers, const CollideRequest& request) {
+  return ShapeAnswers<SceneKinds>(scene, of_layers(layers)).answer(request);
 }
 
 template <class Overlap>
@@ -89,36 +100,39 @@ Result<Json> answer_faces(const Scene& scene, Overlap overlap) {
   return Json{{"count", faces.size()}, {"faces", faces}};
 }
 
-Result<Json> answer(const Scene& scene, const BoxRequest& request) {
+Result<Json> answer(const Scene& scene, LayerMask layers, const BoxRequest& request) {
   if (request.with_overlap) return not_for_scenes("whether something is within a distance");
-  return answer_faces(
-      scene, [&](SceneFaceVisitor visitor) { return overlap_box(scene, request.box, visitor); });
-}
-
-Result<Json> answer(const Scene& scene, const SphereRequest& request) {
   return answer_faces(scene, [&](SceneFaceVisitor visitor) {
-    return overlap_sphere(scene, request.center, request.radius, visitor);
+    return overlap_box(scene, request.box, visitor, layers);
   });
 }
 
-Result<Json> answer(const Scene& scene, const FrustumRequest& request) {
+Result<Json> answer(const Scene& scene, LayerMask layers, const SphereRequest& request) {
+  return answer_faces(scene, [&](SceneFaceVisitor visitor) {
+    return overlap_sphere(scene, request.center, request.radius, visitor, layers);
+  });
+}
+
+Result<Json> answer(const Scene& scene, LayerMask layers, const FrustumRequest& request) {
   const Frustum frustum = request.frustum();
   if (!request.instances) {
-    return answer_faces(
-        scene, [&](SceneFaceVisitor visitor) { return overlap_frustum(scene, frustum, visitor); });
+    return answer_faces(scene, [&](SceneFaceVisitor visitor) {
+      return overlap_frustum(scene, frustum, visitor, layers);
+    });
   }
   Json instances = Json::array();
-  const Result<Visit> visit = instances_in_frustum(scene, frustum, [&](std::uint32_t instance) {
+  const auto add = [&](std::uint32_t instance) {
     add_instance(scene, instance, instances.emplace_back());
     return true;
-  });
+  };
+  const Result<Visit> visit = instances_in_frustum(scene, frustum, add, layers);
   if (!visit) return visit.error();
   return Json{{"count", instances.size()}, {"instances", instances}};
 }
 
-Result<Json> answer(const Scene& scene, const PointRequest& request) {
+Result<Json> answer(const Scene& scene, LayerMask layers, const PointRequest& request) {
   if (request.with_bounds) return not_for_scenes("an allowed error or a budget");
-  const auto found = closest_point(scene, request.at, request.options.max_distance);
+  const auto found = closest_point(scene, request.at, request.options.max_distance, layers);
   if (!found.ok()) return found.error();
   Json json = {{"found", found.has_value()}};
   if (found.has_value()) {
@@ -169,7 +183,11 @@ Result<Json> answer_pair_contacts(const Scene& scene, bool first_only,
   return Json{{"hit", !contacts.empty()}, {"count", contacts.size()}, {"contacts", contacts}};
 }
 
-Result<Json> answer(const Scene& scene, const ContactsRequest& request) {
+Result<Json> answer(const Scene& scene, LayerMask layers, const ContactsRequest& request) {
+  if (layers != kAllLayers) {
+    return Error{Errc::kInvalidQuery,
+                 "contacts: --layer is for the other kinds; which layers meet is the profile's"};
+  }
   if (request.points) {
     return answer_pair_contacts(scene, request.first_only, [&](ScenePairContactVisitor visitor) {
       return pair_contacts(scene, visitor);
@@ -179,20 +197,21 @@ Result<Json> answer(const Scene& scene, const ContactsRequest& request) {
                       [&](ScenePairVisitor visitor) { return contacts(scene, visitor); });
 }
 
-Result<Json> answer_pair(const Scene& scene, const Tree& second, const PairRequest& request) {
+Result<Json> answer_pair(const Scene& scene, LayerMask layers, const Tree& second,
+                         const PairRequest& request) {
   if (request.contacts) {
     return answer_pair_contacts(scene, request.first_only, [&](ScenePairContactVisitor visitor) {
-      return pair_contacts(scene, second, request.second.pose, visitor);
+      return pair_contacts(scene, second, request.second.pose, visitor, layers);
     });
   }
   return answer_pairs(scene, request.first_only, [&](ScenePairVisitor visitor) {
-    return overlap_pairs(scene, second, request.second.pose, visitor);
+    return overlap_pairs(scene, second, request.second.pose, visitor, layers);
   });
 }
-Result<Json> answer_pair(const Scene&, const Tree&, const DistanceRequest&) {
+Result<Json> answer_pair(const Scene&, LayerMask, const Tree&, const DistanceRequest&) {
   return not_for_scenes("a distance");
 }
-Result<Json> answer_pair(const Scene&, const Tree&, const OverlapRequest&) {
+Result<Json> answer_pair(const Scene&, LayerMask, const Tree&, const OverlapRequest&) {
   return not_for_scenes("whether two trees touch within a distance");
 }
 
@@ -328,11 +347,29 @@ Result<Scene> move_scene(const File& file, std::span<const std::string> moves) {
   return scene;
 }
 
-Result<Json> answer(const File& file, const Scene& scene, const QueryRequest& request,
-                    TreeCache& others) {
+Result<LayerMask> layers_named(const Scene& scene, std::span<const std::string> names) {
+  if (names.empty()) return kAllLayers;
+  LayerMask layers = 0;
+  std::vector<std::string> known;
+  for (std::uint32_t i = 0; i < scene.layer_count(); ++i) known.emplace_back(scene.layer_name(i));
+  for (const std::string& name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) {
+      const std::string meant = suggestion(name, known);
+      return Error{Errc::kInvalidQuery,
+                   fmt::format("--layer: no layer is called \"{}\"{}", name,
+                               meant.empty() ? "; expected " + listed(known) : meant)};
+    }
+    layers |= LayerMask{1} << (found - known.begin());
+  }
+  return layers;
+}
+
+Result<Json> answer(const File& file, const Scene& scene, LayerMask layers,
+                    const QueryRequest& request, TreeCache& others) {
   Result<Json> answered = query_one_or_two(
-      request, others, [&](const auto& q) { return answer(scene, q); },
-      [&](const Tree& second, const auto& q) { return answer_pair(scene, second, q); });
+      request, others, [&](const auto& q) { return answer(scene, layers, q); },
+      [&](const Tree& second, const auto& q) { return answer_pair(scene, layers, second, q); });
   if (answered.code() != Errc::kPartLeftOut) return answered;
   // A query answers with a code alone; binding says by which line of the profile.
   SceneOptions needed;

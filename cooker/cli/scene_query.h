@@ -30,10 +30,13 @@ Result<OpenedScene> open_scene(File file, std::span<const std::string> moves);
 /// The same scene with its instances as they are in the file, but for `moves`.
 Result<Scene> move_scene(const File& file, std::span<const std::string> moves);
 
-/// The answer in the form that `boxtree query --json` prints: that for a tree, and the instance.
-/// Errors: kInvalidQuery for kinds that only trees answer; kPartLeftOut with the line of the
-/// profile that left it out.
-Result<Json> answer(const File& file, const Scene& scene, const QueryRequest& request,
-                    TreeCache& others);
+/// The layers with these names; all of them without a name. Error: kInvalidQuery.
+Result<LayerMask> layers_named(const Scene& scene, std::span<const std::string> names);
+
+/// The answer of these layers in the form that `boxtree query --json` prints: that for a tree, and
+/// the instance. Errors: kInvalidQuery for kinds that only trees answer, and of contacts for less
+/// than all layers; kPartLeftOut with the line of the profile that left it out.
+Result<Json> answer(const File& file, const Scene& scene, LayerMask layers,
+                    const QueryRequest& request, TreeCache& others);
 
 }  // namespace boxtree::cooker

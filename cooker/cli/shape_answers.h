@@ -38,11 +38,15 @@ void sort_places(std::vector<HitPlace>& places);
 
 /// Of a Kinds::Body, a Tree or a Scene, which answers by OfRay, OfCast and OfShape and takes
 /// Options. Kinds::add_face(body, hit, json) adds what was hit, Kinds::tree_of(body, hit) is the
-/// tree that it is of; Kinds::rank(body, hit) orders hits at the same place.
+/// tree that it is of; Kinds::rank(body, hit) orders hits at the same place, and
+/// Kinds::collide(body, shape, visitor, options) finds the contacts of a shape.
 template <class Kinds>
 class ShapeAnswers {
  public:
-  explicit ShapeAnswers(const typename Kinds::Body& body) : body_(body) {}
+  /// `options`: what a request does not say.
+  explicit ShapeAnswers(const typename Kinds::Body& body,
+                        const typename Kinds::Options& options = {})
+      : body_(body), options_(options) {}
 
   Result<Json> answer(const RayRequest& request) const {
     const auto options = options_of(request);
@@ -81,8 +85,8 @@ class ShapeAnswers {
   using OfShape = typename Kinds::OfShape;
 
   template <class Request>
-  static typename Kinds::Options options_of(const Request& request) {
-    typename Kinds::Options options;
+  typename Kinds::Options options_of(const Request& request) const {
+    typename Kinds::Options options = options_;
     options.back_faces = request.back_faces;
     return options;
   }
@@ -143,7 +147,7 @@ class ShapeAnswers {
       contacts.push_back(contact);
       return true;
     };
-    const Result<Visit> visit = collide(body_, shape, keep);
+    const Result<Visit> visit = Kinds::collide(body_, shape, keep, options_);
     if (!visit) return visit.error();
     sort(contacts, [](const OfShape&) { return 0.0; });
     if (request.merges) contacts.resize(merge_contacts(contacts, request.merge));
@@ -203,6 +207,7 @@ class ShapeAnswers {
   }
 
   const typename Kinds::Body& body_;
+  const typename Kinds::Options options_;
 };
 
 }  // namespace boxtree::cooker

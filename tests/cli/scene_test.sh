@@ -52,6 +52,35 @@ for stated in '--grid-step 2^-10' '--grid-bits 12'; do
   same "$(grep -c '"hit":true' out)" 41
 done
 
+# Layers by name: what another one has is not there.
+printf '[scene]\n[[mesh]]\nname = "big"\nfile = "big.obj"\n[[mesh]]\nname = "small"\nfile = "small.obj"\n' >layers.toml
+printf '[[instance]]\nname = "left"\nmesh = "big"\n[[instance]]\nname = "right"\nmesh = "small"\n' >>layers.toml
+printf '[[object]]\nname = "ground"\nmatch = ["left"]\n[[object]]\nname = "props"\nmatch = ["right"]\n' >>layers.toml
+expect 0 "$boxtree" cook --profile layers.toml -o layers.bxt -q
+printf 'v -0.1 0.5 -1\nv 0.1 0.5 -1\nv 0 0.5 1\nf 1 2 3\n' >needle.obj
+expect 0 "$boxtree" cook needle.obj -o needle.bxt -q
+for query in 'ray --origin 0,0.5,9 --direction 0,0,-1' 'cast --sphere 0.1 --at 0,0.5,9 --direction 0,0,-1' 'collide --sphere 0.1 --at 0,0.5,0' \
+  'box --min=-0.1,0.4,-1 --max=0.1,0.6,1' 'sphere --center 0,0.5,0 --radius 0.1' 'pair needle.bxt' \
+  'frustum --matrix 10,0,0,0,0,1,0,-0.5,0,0,1,0.5,0,0,0,1'; do
+  # shellcheck disable=SC2086 # a kind and its options
+  for layers in '' '--layer ground' '--layer ground --layer props'; do
+    expect 0 "$boxtree" query layers.bxt $layers $query --json
+    jq -e '.hit == true or .count > 0' out >/dev/null
+  done
+  expect 0 "$boxtree" query layers.bxt --layer props $query --json
+  jq -e '.hit == false or .count == 0' out >/dev/null
+done
+expect 0 "$boxtree" query layers.bxt --layer props point --at 0,0.5,0 --json
+same "$(jq -c '[.name, (.distance * 1e7 | round)]' out)" '["right",3333252]'
+expect 1 "$boxtree" query layers.bxt --layer prop point --at 0,0.5,0
+same "$(cat err)" "boxtree: invalid_query: layers.bxt: --layer: no layer is called \"prop\"; did you mean 'props'?"
+expect 1 "$boxtree" query layers.bxt --layer sea point --at 0,0.5,0
+same "$(cat err)" 'boxtree: invalid_query: layers.bxt: --layer: no layer is called "sea"; expected ground or props'
+expect 1 "$boxtree" query layers.bxt --layer props contacts --move right=0,0,0
+grep -q '^boxtree: invalid_query: layers.bxt: contacts: --layer is for the other kinds' err
+expect 1 "$boxtree" query layers.bxt --tree big --layer props point --at 0,0.5,0
+grep -q '^boxtree: usage: query: --layer is for instances of a scene$' err
+
 # One mesh is no scene, unless it is made one; its bytes are accounted for likewise.
 expect 0 "$boxtree" cook "$level/../meshes/crate.obj" -o crate.bxt --why
 grep -q 'what a reader opens the file by' out
