@@ -35,6 +35,11 @@ const Json& array_at(const Json& object, const char* key) {
   return found != nullptr && found->is_array() ? *found : kEmpty;
 }
 
+const Json& element_at(const Json& list, std::uint64_t index) {
+  static const Json kNone;
+  return index < list.size() ? list[index] : kNone;
+}
+
 std::string gltf_fault(const SourceFile& source) {
   if (!is_gltf(source.path())) return {};
   const bool is_binary = has_extension(source.path(), "glb");

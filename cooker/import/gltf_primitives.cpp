@@ -11,11 +11,6 @@
 
 namespace boxtree::cooker {
 
-const Json& element_at(const Json& list, std::uint64_t index) {
-  static const Json kNone;
-  return index < list.size() ? list[index] : kNone;
-}
-
 std::string name_of_mesh(const Json& mesh, std::size_t number) {
   const Json* const name = mesh.find("name");
   std::string text = name != nullptr && name->is_string() ? name->get<std::string>() : "";

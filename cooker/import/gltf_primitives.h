@@ -18,9 +18,6 @@ namespace boxtree::cooker {
 /// A number for each primitive of each mesh of a document.
 using PrimitiveNumbers = std::vector<std::vector<std::uint32_t>>;
 
-/// The element of a list, or null.
-[[nodiscard]] const Json& element_at(const Json& list, std::uint64_t index);
-
 /// Calls visit(mesh, number of the mesh, primitive, its number in the mesh) for each primitive.
 template <class Visit>
 void visit_primitives(const Json& document, const Visit& visit) {

@@ -18,7 +18,6 @@
 #include "cooker/import/gltf_document.h"
 #include "cooker/import/gltf_nesting.h"
 #include "cooker/import/gltf_numbers.h"
-#include "cooker/import/gltf_primitives.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/reorder/reorder.h"
 #include "cooker/system/path.h"
