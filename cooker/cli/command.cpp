@@ -2,7 +2,6 @@
 #include "cooker/cli/command.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -20,6 +19,7 @@
 #include "cooker/cli/usage_message.h"
 #include "cooker/system/path.h"
 #include "cooker/text/nearest_name.h"
+#include "cooker/text/number_of.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -34,14 +34,6 @@ std::vector<std::string> split_list(const std::string& text) {
     }
   }
   return words;
-}
-
-// A number as vectors of options, batches and meshes write it: not "0x10" or "+1", and of double.
-std::optional<double> number_in(const std::string& text) {
-  double number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && last == end ? std::optional(number) : std::nullopt;
 }
 
 // "FILE" for a positional, "--output" for an option.
@@ -179,7 +171,7 @@ void Option::expect_number() {
   is_allowed_ = [](double value) { return !std::is_unsigned_v<T> || value >= 0; };
   parsed_->check(CLI::Validator(
       [this](std::string& text) {
-        std::optional<double> value = number_in(text);
+        std::optional<double> value = number_of<double>(text);
         if constexpr (!std::is_floating_point_v<T>) {
           T converted{};
           if (!CLI::detail::lexical_cast(text, converted)) value.reset();
@@ -359,7 +351,7 @@ Option* Command::add_option(const std::string& name, T& out, const std::string& 
   if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>) {
     // CLI11 reads numbers as long double, and rounds them twice.
     Option* const option = add(app_->add_option_function<std::string>(
-        name, [&out](const std::string& text) { out = number_in(text).value(); }, help));
+        name, [&out](const std::string& text) { out = number_of<double>(text).value(); }, help));
     option->expect_number<double>();
     return option;
   }

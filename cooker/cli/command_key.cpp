@@ -141,8 +141,7 @@ void add_key_command(Command& program, int& status) {
       "Print what a cook depends on, without cooking\n"
       "One line: the key, which is a SHA-256 of all that can change a byte of the output, of names "
       "of inputs (without folders), of --require-files and of nothing else, the output, and the "
-      "files that the cook "
-      "reads, with tabs between them. Equal keys: equal outputs.");
+      "files that the cook reads, with tabs between them. Equal keys: equal outputs.");
   declare_cook_options(command, arguments->cook);
   declare_manifest(command, arguments->farm);
   declare_shard(command, arguments->farm);

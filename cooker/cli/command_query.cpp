@@ -303,10 +303,11 @@ int run(const QueryArguments& arguments, const RequestDefaults& defaults) {
     opened->file = std::move(*member);
   }
   const File& file = opened->file;
-  if (!arguments.moves.empty() && (!file.has_scene() || !arguments.tree.empty())) {
+  const bool is_of_scene = file.has_scene() && arguments.tree.empty();
+  if (!is_of_scene && !arguments.moves.empty()) {
     return usage("query: --move is for instances of a scene");
   }
-  if (!arguments.layers.empty() && (!file.has_scene() || !arguments.tree.empty())) {
+  if (!is_of_scene && !arguments.layers.empty()) {
     return usage("query: --layer is for instances of a scene");
   }
   const auto answer_all = [&](const AnswerRequest& answer_request) {
@@ -319,7 +320,7 @@ int run(const QueryArguments& arguments, const RequestDefaults& defaults) {
     print_answer(arguments, *answer);
     return 0;
   };
-  if (file.has_scene() && arguments.tree.empty()) {
+  if (is_of_scene) {
     const Result<OpenedScene> scene = open_scene(std::move(opened->file), arguments.moves);
     if (scene.code() == Errc::kExternalMeshNeeded) {
       return fail(
