@@ -46,7 +46,7 @@ void run(Bytes input) {
   check(cooker::answer(small_tree().tree, line->request, others));
   const File& file = small_scene().file;
   const Result<Scene> scene = cooker::move_scene(file, line->moves);
-  if (scene) check(cooker::answer(file, *scene, line->request, others));
+  if (scene) check(cooker::answer(file, *scene, kAllLayers, line->request, others));
 }
 
 }  // namespace boxtree::fuzz
