@@ -323,7 +323,8 @@ struct Nearness {
 };
 
 Nearness nearness_of(const ClosestPoints& at) noexcept {
-  return {at.between, std::sqrt(squared_length(at.between)), 0, at.upper};
+  const double length = std::sqrt(squared_length(at.between));
+  return {at.between, length, 2 * length - at.upper, at.upper};
 }
 
 Nearness nearness(const MovingShape& moving, const Corners& corner) noexcept {
@@ -338,19 +339,21 @@ Nearness nearness(const MovingShape& moving, const Corners& corner) noexcept {
 // fall any more.
 double certain_by(const MovingShape& moving, const Triangle& triangle, double s, Nearness at,
                   const Eigen::Vector3d& normal) noexcept {
-  const double doubt = moving.doubt;
+  const double doubt = moving.doubt, radius = moving.shape.radius;
+  // A distance tells no more how deep a hull is, nor a core that has next to nothing around it.
+  const bool is_core = moving.shape.hull != nullptr || radius <= 8 * doubt;
   double by = s, step = 0;
   for (int n = 0; n < kMostSteps; ++n) {
-    const double missing = at.upper + doubt - moving.shape.radius;
-    // Rounding tilts the line between points of a hull that are near each other, but no normal.
-    const bool is_last = moving.shape.hull != nullptr && at.length <= 8 * doubt;
+    const double missing = at.upper + doubt - radius;
+    // Rounding tilts the line between points that are near each other, but no normal.
+    const bool is_last = is_core && at.length <= radius + 8 * doubt;
     const double speed =
         is_last ? -dot(normal, moving.direction) : dot(at.between, moving.direction);
     if (!(missing > 0) || !(speed > 0)) break;
     step = is_last ? step + (at.length + 2 * doubt) / speed
                    : std::max(2 * step, 2 * missing * at.length / speed);
     at = nearness(moving, placed(moving, triangle, s + step));
-    if (is_last && at.lower > 6 * doubt) break;  // it has passed a corner
+    if (is_last && at.lower > radius + 6 * doubt) break;  // it has passed a corner
     by = s + step;
     if (is_last) break;
   }

@@ -378,6 +378,25 @@ ConvexHull scaled_to(std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d
   return hull;
 }
 
+// Their distance stays 0 once they have touched: it does not tell how deep they are.
+TEST_P(CastCases, ACapsuleWithoutRadiusThatMovesAlongItself) {
+  for (const double radius : {0.0, 1e-16, 1e-14}) {
+    for (const Eigen::Vector3d& along :
+         {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0.5, 0.25, 1), Eigen::Vector3d(-1, 0.5, 0.5)}) {
+      // Its lower end falls onto (0.25, 0.5, 0), inside of a face.
+      const Eigen::Vector3d low = Eigen::Vector3d(0.25, 0.5, 0) + 2 * along;
+      const CastResult hit =
+          cast_closest(floor_.tree, Capsule{low, low + along, radius}, Motion{-along});
+      ASSERT_TRUE(hit);
+      EXPECT_LE(hit->t_lower, 2 - radius);
+      EXPECT_GE(hit->t, 2 - 4 * radius);
+      // Toward the face it moves by 1/2 or more.
+      EXPECT_LE(hit->t - hit->t_lower, 2 * 4 * 8 * 0x1p-46);
+      EXPECT_NEAR(hit->normal.z(), 1, 1e-12);
+    }
+  }
+}
+
 TEST_P(CastCases, AHullOntoASeamAndFlatOnIt) {
   std::vector<Eigen::Vector3d> points = cube();
   const ConvexHull hull = scaled_to(points, {0.5, 0.25, 0.5}, {0.25, 0.25, 3});
