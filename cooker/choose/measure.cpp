@@ -5,7 +5,9 @@
 #include <boxtree/boxtree.h>
 
 #include "cooker/system/process.h"
+#include "runtime/tree/bound_codec.h"
 #include "runtime/tree/bound_tree.h"
+#include "runtime/walk/chosen_targets.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -67,6 +69,14 @@ double per_shape(std::size_t count, std::size_t runs, Status& status,
 }
 
 }  // namespace
+
+const char* instruction_set() noexcept {
+  if constexpr (kWalksByVectors) {
+    return chosen_instruction_set();
+  } else {
+    return "none";
+  }
+}
 
 double clock_cost_ns() {
   using Clock = std::chrono::steady_clock;

@@ -25,6 +25,9 @@ namespace boxtree::cooker {
   return *middle;
 }
 
+/// By which vectors the wide codecs are walked, by this build on this machine: "AVX2"; "none".
+[[nodiscard]] const char* instruction_set() noexcept;
+
 /// Processor time of one call in seconds, including the kernel, excluding other work on the machine
 /// (thread_seconds).
 template <class Body>

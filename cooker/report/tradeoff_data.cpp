@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/choose/measure.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/report/pages_json.h"
 #include "cooker/report/tradeoff_advice.h"
@@ -192,6 +193,7 @@ Surroundings surroundings(const std::string& command) {
   Surroundings around;
   around.processor = line_of("/proc/cpuinfo", "model name");
   if (around.processor.empty()) around.processor = "unknown";
+  around.instruction_set = instruction_set();
   around.threads = std::to_string(std::thread::hardware_concurrency());
 #ifndef _WIN32
   utsname system{};
@@ -240,7 +242,7 @@ Result<IncludedResults> read_results(const std::filesystem::path& path) {
 std::string to_json(const TradeoffReport& report) {
   const Surroundings& around = report.surroundings;
   Json json = {{"command", around.command},     {"version", around.version},
-               {"processor", around.processor}, {"threads", around.threads},
+               {"processor", around.processor}, {"instruction_set", around.instruction_set}, {"threads", around.threads},
                {"system", around.system},       {"compiler", around.compiler},
                {"load", around.load},           {"quick", report.quick}};
   json["meshes"] = Json::array();

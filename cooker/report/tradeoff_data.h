@@ -14,6 +14,7 @@ namespace boxtree::cooker {
 /// The machine and program that made the figures.
 struct Surroundings {
   std::string processor;
+  std::string instruction_set;  // by which the wide codecs are walked
   std::string threads;  // of the machine; the figures are for one
   std::string system;
   std::string compiler;

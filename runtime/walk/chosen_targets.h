@@ -11,4 +11,7 @@ namespace boxtree {
 /// and again after these. Safe from any thread.
 [[nodiscard]] std::int64_t chosen_targets() noexcept;
 
+/// The one of them that walks of the wide codecs take, for people: "AVX2". As long as the program.
+[[nodiscard]] const char* chosen_instruction_set() noexcept;
+
 }  // namespace boxtree
