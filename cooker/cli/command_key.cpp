@@ -31,6 +31,7 @@ namespace {
 struct KeyArguments {
   CookArguments cook;
   FarmArguments farm;
+  int jobs = kAllThreads;
   bool inputs = false;
   bool explain = false;
   bool json = false;
@@ -109,25 +110,23 @@ int keys_of_manifest(const KeyArguments& arguments) {
   constexpr std::size_t kPart = 256;  // so that what waits to be printed stays small
   int status = 0;
   Json documents = Json::array();
-  run_on_threads(kAllThreads, [&] {
-    for (std::size_t first = 0; first < ours.size(); first += kPart) {
-      const std::span<const std::size_t> part =
-          std::span(ours).subspan(first, std::min(kPart, ours.size() - first));
-      const Keys keys(*jobs, part);
-      for (std::size_t i = 0; i < part.size(); ++i) {
-        const Result<JobKey>& key = keys[i];
-        const std::size_t job = part[i];
-        if (!key) {
-          const int failed = fail(in_file(jobs->place(job), key.error()));
-          if (status == 0) status = failed;
-        } else if (arguments.json) {
-          documents.push_back(key_json(jobs->job(job), *key));
-        } else {
-          print_line(jobs->job(job), *key);
-        }
+  for (std::size_t first = 0; first < ours.size(); first += kPart) {
+    const std::span<const std::size_t> part =
+        std::span(ours).subspan(first, std::min(kPart, ours.size() - first));
+    const Keys keys(*jobs, part);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const Result<JobKey>& key = keys[i];
+      const std::size_t job = part[i];
+      if (!key) {
+        const int failed = fail(in_file(jobs->place(job), key.error()));
+        if (status == 0) status = failed;
+      } else if (arguments.json) {
+        documents.push_back(key_json(jobs->job(job), *key));
+      } else {
+        print_line(jobs->job(job), *key);
       }
     }
-  });
+  }
   if (arguments.json) print(Json{{"jobs", std::move(documents)}});
   return status;
 }
@@ -152,6 +151,9 @@ void add_key_command(Command& program, int& status) {
       "--explain", arguments->explain,
       "Print the text that the key is the SHA-256 of, to compare that of another key with");
   explain->excludes(inputs);
+  command.add_option("-j,--jobs", arguments->jobs, "Threads; the keys do not depend on it [all]")
+      ->type_name("N")
+      ->between(1, 1024);
   command.add_flag("--json", arguments->json, "Print one JSON document")
       ->excludes(inputs)
       ->excludes(explain);
@@ -160,12 +162,11 @@ void add_key_command(Command& program, int& status) {
   command.example("Of one cook", "boxtree key bunny.obj -o bunny.bxt --tolerance 0.001");
   command.example("What a scene is made of", "boxtree key --profile scene.toml --inputs");
   command.callback([arguments, &status] {
-    if (!arguments->farm.manifest.empty()) {
-      status = keys_of_manifest(*arguments);
-      return;
-    }
-    require_source(arguments->cook);
-    status = key_of_one(*arguments);
+    const bool of_manifest = !arguments->farm.manifest.empty();
+    if (!of_manifest) require_source(arguments->cook);
+    run_on_threads(arguments->jobs, [&] {
+      status = of_manifest ? keys_of_manifest(*arguments) : key_of_one(*arguments);
+    });
   });
 }
 
