@@ -45,6 +45,9 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/format/include/boxtree/ ${PROJECT_SOURCE
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree COMPONENT boxtree_development)
 install(FILES ${BOXTREE_INCLUDE_DIR}/boxtree/configuration.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree COMPONENT boxtree_development)
+# Of an installation as a whole; packages have copies of their own (BoxtreePackages.cmake).
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/boxtree RENAME copyright
+        COMPONENT boxtree_licence)
 # With the program, so that boxtree::cli is there exactly where the program is.
 if(BOXTREE_BUILD_COOKER)
   install(TARGETS boxtree_cli EXPORT boxtreeCliTargets
