@@ -3,7 +3,8 @@
 # Installs what is missing, builds and runs every test. The last line counts them.
 #   tests/run.sh [--all | PART...]   [release]
 #   release         every test of one build
-#   builds          the runtime in other builds: shared, without optimisation, with parts left out
+#   builds          the runtime in other builds: shared, without optimisation, with parts left out; the command line
+#                   without the libraries that may be left out
 #   asan-ubsan      all but those labelled "figures", with sanitizers and the assertions of libraries
 #   scalar          every test without vectors
 #   tsan            what runs on several threads, with ThreadSanitizer
