@@ -9,7 +9,9 @@
 #                compared with what the first platform answered
 #   --long       windows-suites: the tests of queries, scenes, codecs, damaged files and robustness, too
 #   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake;
-#                scalar: without vectors; sse4, avx512: walks by other vectors; O0, clang, libcxx: other compilers and libraries;
+#                scalar: without vectors; sse4, avx512: walks by other vectors; avx512-leaves: what every
+#                build does where the processor has AVX-512; both emulated by Bochs where it has not, half an hour for
+#                1000 queries; O0, clang, libcxx: other compilers and libraries;
 #                windows: x86-64 under Wine, the interface in C; windows-cli: the command line there, compared with
 #                this machine's; windows-suites: tests of files there; arm64, armhf, riscv64, i386: under qemu or as
 #                they are, without vectors; arm64-neon: with NEON, by Debian's Highway for arm64;
@@ -21,7 +23,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 source=$(cd "$here/../.." && pwd)
 build=${BOXTREE_BUILD:-$source/build}
 work=$build/platforms
-known="c amalgamation scalar sse4 avx512 O0 clang libcxx windows windows-cli windows-suites arm64 arm64-neon armhf riscv64 i386 wasm farm"
+known="c amalgamation scalar sse4 avx512 avx512-leaves O0 clang libcxx windows windows-cli windows-suites arm64 arm64-neon armhf riscv64 i386 wasm farm"
 count=15000
 long=
 while [ $# -gt 0 ]; do
@@ -176,10 +178,19 @@ platform_sse4() {
 }
 platform_avx512() {
   by_vectors avx512 "sse4;avx2;avx512" || return 0
+  with_avx512 avx512
+}
+# What is built everywhere, on such a processor: walks by AVX2, leaves of clusters by AVX-512.
+platform_avx512-leaves() {
+  by_vectors avx512-leaves "sse4;avx2" || return 0
+  with_avx512 avx512-leaves
+}
+# with_avx512 NAME: on this processor or on one that is emulated.
+with_avx512() {
   if grep -q avx512_vbmi2 /proc/cpuinfo; then
-    conclude avx512 "$work/avx512/digests"
+    conclude "$1" "$work/$1/digests"
   else
-    skip avx512 "this processor has none; it compiles"
+    BOXTREE_BOCHS=$work/bochs conclude "$1" "$work/$1/digests" "$here/in_bochs.sh"
   fi
 }
 # by_vectors NAME SETS: what is linked with walks by these vectors.
