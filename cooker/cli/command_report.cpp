@@ -253,6 +253,7 @@ Result<Imported> read_mesh(const std::filesystem::path& path, const ReportArgume
   options.skip_bad = arguments.skip_bad;
   options.command = "report";
   if (arguments.f64) options.precision = Precision::kF64;
+  options.keep_doubles = true;  // as --exact does, in the commands that are recommended
   options.count_moves = arguments.tolerance.has_value();
   Result<Imported> imported = import_mesh(path, options);
   if (!imported) return imported.error();
@@ -468,7 +469,8 @@ void add_report_command(Command& program, int& status) {
       .add_flag(
           "--f64", arguments->f64,
           "Hold positions as f64, not f32, for meshes far from the origin: all digits of OBJ, "
-          "OFF, PLY and text STL files, and what nodes of others place")
+          "OFF, PLY and text STL files, and what nodes of others place [for PLY files whose doubles "
+          "f32 does not hold]")
       ->excludes(paper);
   command
       .add_option(

@@ -32,6 +32,16 @@ def write_strip(path, cells):
             file.write(f"f {a} {a + 2} {a + 3}\nf {a} {a + 3} {a + 1}\n")
 
 
+def write_doubles(path):
+    """A bent strip as PLY, of doubles that f32 does not hold."""
+    cells = 60
+    points = [f"{x / 3} {y} {x * x / 7}" for x in range(cells + 1) for y in (0, 0.7)]
+    faces = [f"3 {a} {a + 2} {a + 3}\n3 {a} {a + 3} {a + 1}" for a in range(0, 2 * cells, 2)]
+    header = ["ply", "format ascii 1.0", f"element vertex {len(points)}", *(f"property double {k}" for k in "xyz"),
+              f"element face {2 * cells}", "property list uchar int vertex_indices", "end_header"]
+    pathlib.Path(path).write_text("\n".join(header + points + faces) + "\n", encoding="ascii")
+
+
 def run(boxtree, *arguments):
     return subprocess.run([boxtree, *map(str, arguments)], check=True, stdout=subprocess.PIPE, text=True).stdout
 
@@ -79,8 +89,9 @@ def main():
         write_strip("one.obj", 1)
         write_strip("few.obj", 5)
         write_strip("more of it's.obj", 200)
+        write_doubles("doubles.ply")
         stores = set()
-        for mesh in ("one.obj", "few.obj", "more of it's.obj", source / "samples/meshes/crate.obj",
+        for mesh in ("one.obj", "few.obj", "more of it's.obj", "doubles.ply", source / "samples/meshes/crate.obj",
                      source / "samples/level/level.gltf"):  # a scene, if it were not flattened
             stores.update(check(boxtree, mesh, "--no-times"))
         stores.update(check(boxtree, source / "samples/meshes/crate.obj"))  # by times of this machine
