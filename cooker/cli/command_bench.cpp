@@ -145,10 +145,12 @@ void print_row(const Json& row) {
              counted(row["triangles"].get<std::uint32_t>(), "triangle"));
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
   fmt::print(
-      "  measured means, wide codecs walked by {}; spheres with a radius of 1 % of the diagonal are cast along the rays;\n"
+      "  measured means, wide codecs walked by {}; spheres with a radius of 1 % of the diagonal "
+      "are cast along the rays;\n"
       "  boxes are {};\n  contacts are those with {};\n  view is {};\n  near is {};\n"
       "  ball is whether a sphere of that radius around each of them touches anything\n",
-      row["instruction_set"].get<std::string>(), kBoxMeaning, kPoseMeaning, kCameraMeaning, kLatticeMeaning);
+      row["instruction_set"].get<std::string>(), kBoxMeaning, kPoseMeaning, kCameraMeaning,
+      kLatticeMeaning);
   const auto number = [&](const char* key) { return row[key].get<double>(); };
   const auto of = [&](const char* key, const char* word) {
     return counted(row[key].get<std::uint64_t>(), word);

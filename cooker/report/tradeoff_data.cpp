@@ -242,9 +242,10 @@ Result<IncludedResults> read_results(const std::filesystem::path& path) {
 std::string to_json(const TradeoffReport& report) {
   const Surroundings& around = report.surroundings;
   Json json = {{"command", around.command},     {"version", around.version},
-               {"processor", around.processor}, {"instruction_set", around.instruction_set}, {"threads", around.threads},
-               {"system", around.system},       {"compiler", around.compiler},
-               {"load", around.load},           {"quick", report.quick}};
+               {"processor", around.processor}, {"instruction_set", around.instruction_set},
+               {"threads", around.threads},     {"system", around.system},
+               {"compiler", around.compiler},   {"load", around.load},
+               {"quick", report.quick}};
   json["meshes"] = Json::array();
   for (const MeshTradeoff& mesh : report.meshes) json["meshes"].push_back(to_json(mesh));
   json["peers"] = Json::array();

@@ -15,7 +15,7 @@ namespace boxtree::cooker {
 struct Surroundings {
   std::string processor;
   std::string instruction_set;  // by which the wide codecs are walked
-  std::string threads;  // of the machine; the figures are for one
+  std::string threads;          // of the machine; the figures are for one
   std::string system;
   std::string compiler;
   std::string version;  // of boxtree

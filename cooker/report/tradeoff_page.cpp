@@ -498,9 +498,13 @@ PageSection words_section() {
 PageSection machine_section(const TradeoffReport& report) {
   const Surroundings& around = report.surroundings;
   PageTable table{{"", ""}, {}, 2};
-  table.rows = {{"command", around.command},          {"boxtree", around.version},
-                {"compiler", around.compiler},        {"processor", around.processor},
-                {"wide codecs walked by", around.instruction_set}, {"hardware threads", around.threads}, {"system", around.system}};
+  table.rows = {{"command", around.command},
+                {"boxtree", around.version},
+                {"compiler", around.compiler},
+                {"processor", around.processor},
+                {"wide codecs walked by", around.instruction_set},
+                {"hardware threads", around.threads},
+                {"system", around.system}};
   const bool is_timed = std::any_of(report.meshes.begin(), report.meshes.end(),
                                     [](const MeshTradeoff& mesh) { return mesh.timed; });
   if (is_timed) table.rows.push_back({"load when measuring began", around.load});
