@@ -1224,7 +1224,7 @@ bench_says() {
 }
 expect 0 "$boxtree" bench cube.bxt --quick --runs 1
 bench_says '^cube\.bxt \(cube, [a-z0-9-]+, 12 triangles\)$'
-bench_says 'means; spheres with a radius of 1 % of the diagonal are cast along the rays;'
+bench_says '^  measured means, wide codecs walked by [A-Za-z0-9, -]+; spheres with a radius of 1 % of the diagonal are cast along the rays;$'
 bench_says 'boxes are cubes with an edge of 5 % of the diagonal'
 same "$(awk '$1 ~ /^(ray|cast|box|first|all)$/ { printf "%s%s", separator, $4; separator = "," }' out)" "$(tr -d '[]' <<<"$counts")"
 same "$(awk '$1 ~ /^(ray|cast|box|point|first|all|open)$/ && $2 > 0 { printf "%s %s ", $1, $3 }' out)" \
