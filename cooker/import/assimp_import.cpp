@@ -24,6 +24,7 @@
 
 #include "cooker/import/collada_values.h"
 #include "cooker/import/f32_digits.h"
+#include "cooker/import/face_materials.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/flatten.h"
 #include "cooker/import/gltf_document.h"
@@ -150,9 +151,23 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, ReadOrder 
                  fmt::format("assimp's reader leaves out or makes up a part of it, and says: {}",
                              log.loss())};
   }
+  use.guessed_material = log.guessed_material();
   std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
   undo_unit(*scene);
   return scene;
+}
+
+// Faces have their own materials, or none. A file without any is left to has_no_materials.
+Status check_materials(const ImportOptions& options, const SourceUse& use, const aiScene& scene) {
+  const bool has_some = std::any_of(
+      scene.mMaterials, scene.mMaterials + scene.mNumMaterials, [](const aiMaterial* material) {
+        return std::string_view(material->GetName().C_Str()) != kDefaultMaterial;
+      });
+  if (!options.materials || use.guessed_material.empty() || !has_some) return {};
+  return Error{Errc::kImportFailed,
+               fmt::format("assimp's reader gives faces without a material that of others, and "
+                           "says: {}; give each a material, or cook without --materials",
+                           use.guessed_material)};
 }
 
 // Runs of materials; the materials themselves are added to `scene`. If assimp cannot read the
@@ -338,16 +353,16 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
                          "assimp's reader makes up a part of it, of memory that it has not set: "
                          "read twice, it differs (or the file was changed in between)"});
   }
-  if (Status status = check_stated_faces(checks->gltf.faces, *scene.value()); !status.ok()) {
-    return in_file(source.title(), status.error());
-  }
+  Status status = check_stated_faces(checks->gltf.faces, *scene.value());
+  if (status.ok()) status = check_materials(options, use, *scene.value());
+  if (!status.ok()) return in_file(source.title(), status.error());
   report.files_read = use.files;
   const Result<std::vector<std::uint32_t>> user_data =
       complete_gltf(source, checks->gltf, options, *scene.value(), report);
   if (!user_data.ok()) return user_data.error();
-  Status status = take_over(source, wanted, *scene.value(),
-                            {options, source.title(), {}, *user_data, checks->text.loss},
-                            std::move(report), out);
+  status = take_over(source, wanted, *scene.value(),
+                     {options, source.title(), {}, *user_data, checks->text.loss},
+                     std::move(report), out);
   if (!status.ok()) return status;
   // Hashed last, so that a refused file is not read twice.
   const Result<std::uint64_t> hash = source.bytes()
@@ -371,6 +386,9 @@ Result<SourceFileList> list_assimp_files(const SourceFile& source, const ImportO
   SourceUse use;
   const auto scene = read_scene(source, ReadOrder::kOfFile, use);
   if (!scene.ok()) return in_file(source.title(), scene.error());
+  if (Status status = check_materials(options, use, *scene.value()); !status.ok()) {
+    return in_file(source.title(), status.error());
+  }
   const bool is_all = std::all_of(use.present.begin(), use.present.end(), [&](const auto& name) {
     return std::find(use.named.begin(), use.named.end(), name) != use.named.end();
   });

@@ -62,6 +62,9 @@ constexpr std::string_view kLosses[] = {
     "in <transform> is zero",                     // XGL
 };
 
+// Such faces get the first material of their instance, or of the file.
+constexpr std::string_view kGuessedMaterial = "Collada: No material specified for subgroup";
+
 bool tells_of_loss(std::string_view message) {
   return std::any_of(std::begin(kLosses), std::end(kLosses), [message](std::string_view part) {
     return message.find(part) != std::string_view::npos;
@@ -105,6 +108,9 @@ void ReaderLog::hear(const char* message, bool is_error) {
   // Of readers that say the same a hundred thousand times (Blender's), each is looked at once.
   if (!loss_.empty() || last_ == message) return;
   last_ = message;
+  if (guessed_material_.empty() && last_.find(kGuessedMaterial) != std::string::npos) {
+    guessed_material_ = last_;
+  }
   if (tells_of_loss(last_)) {
     loss_ = last_error_.empty() ? last_ : fmt::format("{}: {}", last_error_, last_);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What assimp's readers say in its log while they read: there alone they tell of faces that they
-// have left out, and of vertices that they have made up.
+// have left out, and of vertices and materials that they have made up.
 #pragma once
 
 #include <string>
@@ -19,12 +19,16 @@ class ReaderLog {
   /// The first message by which geometry of the file is not in the result, or geometry that is not
   /// in the file is, with the error before it, its cause; empty if there was none.
   [[nodiscard]] const std::string& loss() const { return loss_; }
+  /// The first message by which faces without a material have another's, if there are any; or
+  /// empty.
+  [[nodiscard]] const std::string& guessed_material() const { return guessed_material_; }
 
  private:
   friend class ThreadLogger;
   void hear(const char* message, bool is_error);
 
   std::string loss_;
+  std::string guessed_material_;
   std::string last_;        // of all
   std::string last_error_;  // after which nothing else was said
   ReaderLog* const outer_;

@@ -27,6 +27,8 @@ struct SourceUse {
   std::filesystem::path inaccessible;
   /// Why the first file that could not be opened beside a named source could not be.
   std::optional<Error> failure;
+  /// ReaderLog::guessed_material().
+  std::string guessed_material;
   /// Called, unless empty, whenever another file has been opened, with the bytes of all until then.
   std::function<void(std::uint64_t bytes)> opened;
   std::uint64_t bytes_opened = 0;

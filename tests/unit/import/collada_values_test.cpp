@@ -367,5 +367,43 @@ TEST_F(ColladaImport, WhatAssimpCrashesOnIsToldByItsPlace) {
           "polygons of geometry 'g': count: expected 1"));
 }
 
+// They had the material of others, and a filter by it let them through.
+TEST_F(ColladaImport, FacesWithoutAMaterialGetNoOther) {
+  const std::string of_one = primitive("triangles", R"(1" material="m)", "<p>0 1 2</p>");
+  const std::string of_none = primitive("triangles", "1", "<p>1 4 3</p>");
+  constexpr std::string_view kMaterial =
+      R"(<library_materials><material id="M" name="M"><instance_effect url="#e"/></material>)"
+      R"(</library_materials><library_effects><effect id="e"><profile_COMMON/></effect>)"
+      "</library_effects><library_geometries>";
+  constexpr std::string_view kBound =
+      R"(<instance_geometry url="#g"><bind_material><technique_common>)"
+      R"(<instance_material symbol="m" target="#M"/></technique_common></bind_material>)"
+      "</instance_geometry>";
+  const auto file = [&](const std::string& name, const std::string& primitives) {
+    std::string text = document();
+    const auto replace = [&](std::string_view from, std::string_view to) {
+      text.replace(text.find(from), from.size(), to);
+    };
+    replace(kTriangles, primitives);
+    replace(kPlaced, kBound);
+    replace("<library_geometries>", kMaterial);
+    return write(name, text);
+  };
+  const ImportOptions with_materials{.materials = true};
+  const Result<Imported> all = import_mesh(file("all.dae", of_one), with_materials);
+  ASSERT_TRUE(all.ok());
+  EXPECT_EQ(all->materials.names, std::vector<std::string>{"M"});
+  const auto some = file("some.dae", of_one + of_none);
+  EXPECT_TRUE(import_mesh(some).ok());
+  const Result<Imported> refused = import_mesh(some, with_materials);
+  ASSERT_EQ(refused.code(), Errc::kImportFailed);
+  EXPECT_TRUE(has(refused.error().detail, "give each a material, or cook without --materials"));
+  EXPECT_FALSE(list_source_files(some, with_materials).ok());
+  // Of a file without any.
+  const Result<Imported> none = import_mesh(write("none.dae", document()), with_materials);
+  ASSERT_TRUE(none.ok());
+  EXPECT_TRUE(none->report.has_no_materials);
+}
+
 }  // namespace
 }  // namespace boxtree::cooker
