@@ -105,21 +105,26 @@ CoreDistance distance_of_triangle(const SupportSearch& search, Corners hull) noe
     apart = separation_near(found.first, found.second, search.point, corner, search.largest,
                             found.upper - error);
     if (apart.lower >= found.upper - error) break;
-    const Eigen::Vector3d& other = search.point[farthest_point(search.point, between)];
     TriangleDistance best = found;
     Corners best_hull = hull;
-    for (std::size_t i = 0; i < 3; ++i) {
-      Corners exchanged = hull;
-      exchanged[i] = other;
-      const TriangleDistance nearer = triangle_distance({exchanged}, {corner});
-      if (!(nearer.upper < best.upper)) continue;
-      best = nearer;
-      best_hull = exchanged;
-    }
+    const auto exchange_for = [&](const Eigen::Vector3d& other) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        Corners exchanged = hull;
+        exchanged[i] = other;
+        const TriangleDistance nearer = triangle_distance({exchanged}, {corner});
+        if (!(nearer.upper < best.upper)) continue;
+        best = nearer;
+        best_hull = exchanged;
+      }
+    };
+    exchange_for(search.point[farthest_point(search.point, between)]);
     if (!(best.upper < found.upper)) {
       separate_on_features(between, edges_of(hull), edges_of(corner), search.point, corner,
                            search.largest, apart);
-      break;
+      if (apart.lower >= found.upper - error) break;
+      // Rounding tilts a short line: the farthest point along it may be another.
+      for (const Eigen::Vector3d& other : search.point) exchange_for(other);
+      if (!(best.upper < found.upper)) break;
     }
     found = best;
     hull = best_hull;

@@ -464,6 +464,35 @@ TEST_P(CastCases, AHullOfOnePointOrInOnePlane) {
   EXPECT_LE(slid->normal.x(), 1e-6);
 }
 
+// Found by random casts: an edge that lies in the plane of a face of the hull but for what f32
+// rounds. The line between two edges that are next to each other did not tell that the hull's third
+// point is nearer, and t was 1.5e-9 late.
+TEST_P(CastCases, AHullWhoseFaceIsNearlyParallelToAnEdge) {
+  SourceMesh mesh;
+  mesh.positions.f32 = {-2e30f, -3e30f, 3e30f, 3e30f, -1e30f, 0, 2e30f, -2e30f, 3e30f};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  const std::vector<Eigen::Vector3d> points = {
+      {0, 0, -2.300000072388104e29},
+      {-2.300000072388104e29, 2.2999999590513086e30, 1.1499999795256543e30},
+      {0, -2.2999999590513086e30, 0},
+      {0, 0, 0},
+      {2.2999999590513086e30, 2.2999999590513086e30, 2.2999999590513086e30},
+      {1.1499999795256543e30, 1.1499999795256543e30, 2.2999999590513086e30}};
+  const ConvexHull hull{
+      points,
+      {1.779147379369303e+30, 3.6104262897228754e+30, -7.610426467654169e+30},
+      {1, 0, 0, 0}};
+  const CastResult hit = cast_closest(
+      cooked.tree, hull,
+      Motion{{-4.076973645997261e+29, -5.261846226941239e+30, 8.587556375520465e+30}});
+  ASSERT_TRUE(hit);
+  // By exact arithmetic: of the Minkowski difference of hull and triangle.
+  EXPECT_LE(hit->t_lower, 0.828890762024);
+  EXPECT_GE(hit->t, 0.828890762023);
+  EXPECT_LE(hit->t - hit->t_lower, 6e-14);
+}
+
 TEST_P(CastCases, AHullThatStaysOrStartsInContact) {
   std::vector<Eigen::Vector3d> points = cube();
   const ConvexHull hull = scaled_to(points, {0.25, 0.25, 0.25}, {0, 0, 0.125});
