@@ -474,8 +474,9 @@ class OptionFields {
               shape.hull = text;
               return std::string();
             },
-            fmt::format("or the convex hull of the points of the faces of a mesh, at most {} of them",
-                        kMaxHullPoints))
+            fmt::format(
+                "or the convex hull of the points of the faces of a mesh, at most {} of them",
+                kMaxHullPoints))
         ->type_name("MESH")
         ->takes(Values::kMeshes)
         ->one_is_needed();

@@ -74,11 +74,18 @@ Result<std::optional<CookCache::Entry>> HttpCache::find(const Digest& key,
 std::optional<CookCache::Entry> HttpCache::read_entry(const std::string& place,
                                                       const Digest& key) const {
   std::string body;
+  bool is_too_long = false;
   const Result<int> status = client_.get(url_ + place, [&](std::string_view bytes) {
-    if (bytes.size() > kMaxEntryBytes - body.size()) return false;
-    body += bytes;
-    return true;
+    is_too_long = bytes.size() > kMaxEntryBytes - body.size();
+    if (!is_too_long) body += bytes;
+    return !is_too_long;
   });
+  if (is_too_long) {
+    fail(Use::kRead, place,
+         fmt::format("expected an entry of boxtree, of at most {} bytes, found more",
+                     kMaxEntryBytes));
+    return std::nullopt;
+  }
   if (!status) {
     fail(Use::kRead, place, status.error().detail, false);
     return std::nullopt;

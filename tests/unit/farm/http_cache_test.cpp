@@ -188,7 +188,7 @@ TEST_F(HttpCacheTest, EveryFaultOfAnAnswerIsAMiss) {
            Case{"cas-wrong", "another SHA-256"},
            Case{"ac-other", "expected an entry of boxtree"},
            Case{"cas-other", "expected 100000 bytes, found 14"},
-           Case{"ac-endless", "/ac/"},
+           Case{"ac-endless", "of at most 4194304 bytes, found more"},
            Case{"cas-endless", "found more"},
            Case{"closes", "/ac/"},
            Case{"cas-closes", "/cas/"},

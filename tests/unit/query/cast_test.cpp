@@ -479,13 +479,12 @@ TEST_P(CastCases, AHullWhoseFaceIsNearlyParallelToAnEdge) {
       {0, 0, 0},
       {2.2999999590513086e30, 2.2999999590513086e30, 2.2999999590513086e30},
       {1.1499999795256543e30, 1.1499999795256543e30, 2.2999999590513086e30}};
-  const ConvexHull hull{
-      points,
-      {1.779147379369303e+30, 3.6104262897228754e+30, -7.610426467654169e+30},
-      {1, 0, 0, 0}};
-  const CastResult hit = cast_closest(
-      cooked.tree, hull,
-      Motion{{-4.076973645997261e+29, -5.261846226941239e+30, 8.587556375520465e+30}});
+  const ConvexHull hull{points,
+                        {1.779147379369303e+30, 3.6104262897228754e+30, -7.610426467654169e+30},
+                        {1, 0, 0, 0}};
+  const CastResult hit =
+      cast_closest(cooked.tree, hull,
+                   Motion{{-4.076973645997261e+29, -5.261846226941239e+30, 8.587556375520465e+30}});
   ASSERT_TRUE(hit);
   // By exact arithmetic: of the Minkowski difference of hull and triangle.
   EXPECT_LE(hit->t_lower, 0.828890762024);
