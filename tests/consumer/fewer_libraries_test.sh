@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Builds the command line without each library that may be left out, as for Windows: it links, cooks the same bytes
-# as that of the build under test, and says what it does not have. Each source alone: what an object needs of
-# others is then seen by the linker.
+# as that of the build under test, and says what it does not have.
 #   fewer_libraries_test.sh SOURCE COMPILER BOXTREE
 set -euo pipefail
 source=$1 compiler=$2 boxtree=$3
@@ -14,7 +13,7 @@ fail() { echo "fewer libraries: $*"; exit 1; }
 
 quiet cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE= \
   -DBOXTREE_ASSIMP=OFF -DBOXTREE_BLOB=OFF -DBOXTREE_TBB=OFF -DBOXTREE_HTTP=OFF -DBOXTREE_BUILD_TESTS=OFF \
-  -DBOXTREE_UNITY_BUILD=OFF
+  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0
 quiet cmake --build "$work/build" -j2 --target boxtree_cli
 fewer=$work/build/boxtree
 cd "$work"
