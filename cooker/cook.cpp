@@ -307,7 +307,7 @@ class Cook {
 
   // Whether a tree has the same geometry store as others, so that surfaces that touch still touch.
   // In a scene, a tree has a separate store if the profile or the tree's needs decide it; it then
-  // touches others within its tolerance.
+  // touches others within its tolerance. What else was tried decides nothing.
   [[nodiscard]] bool shares_store(std::size_t tree) const {
     const auto has = [&](GeometryId store) {
       const std::vector<Candidate>& candidates = contests_[tree].candidates;
@@ -317,8 +317,10 @@ class Cook {
       }
       return false;
     };
-    return !input_.has_top_level || (may_use_grid_[tree] && has(GeometryId::kGrid) &&
-                                     (has(GeometryId::kExact) || has(GeometryId::kArrays)));
+    if (!input_.has_top_level) return true;
+    return may_use_grid_[tree] && has(GeometryId::kGrid) &&
+           (has(GeometryId::kExact) || has(GeometryId::kArrays)) &&
+           may_want_grid(contests_[tree], wishes_[tree]);
   }
 
   // In a scene, errors name the mesh; without one, users list the meshes themselves.

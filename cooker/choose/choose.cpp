@@ -176,6 +176,11 @@ std::vector<bool> may_still_win(const Contest& tree, const Wishes& wishes) {
   return may_win;
 }
 
+bool may_want_grid(const Contest& tree, const Wishes& wishes) {
+  return wishes.goal != Goal::kSpeed ||
+         !best_of(tree, rate(tree, wishes), Positioning::kLossless).has_value();
+}
+
 std::vector<double> slowdowns(const Contest& tree) {
   static_assert(kQueryKinds == 4 && kRayQueries == 1 && kPairQueries == 8);  // bits in their order
   const QueryKinds queries =

@@ -70,6 +70,10 @@ struct Contest {
 /// Precondition: the baseline and the queries that count are entered.
 [[nodiscard]] std::vector<bool> may_still_win(const Contest& tree, const Wishes& wishes);
 
+/// Whether a tree may want a grid for itself, whatever was tried: bytes count, or no store without
+/// loss is within the budgets. Preconditions: as may_still_win().
+[[nodiscard]] bool may_want_grid(const Contest& tree, const Wishes& wishes);
+
 /// What slowdowns are relative to, for texts.
 inline constexpr const char* kSlowdownMeaning =
     "time over that of wide8 with arrays, mean over the kinds of queries";

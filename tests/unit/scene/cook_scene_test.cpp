@@ -6,6 +6,9 @@
 #include <random>
 #include <set>
 #include <sstream>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -323,6 +326,43 @@ TEST(CookScene, ABudgetOfBytesIsKeptOrRefusedWithTheNearest) {
   EXPECT_NE(refused.error().detail.find("; a larger 'tolerance' allows fewer"), std::string::npos)
       << refused.error().detail;
   EXPECT_EQ(test::read_text(out), before);
+}
+
+// A limit of the file's bytes has every encoding tried, and so has try_all; the grid that was tried
+// then took over objects that are to be fast.
+TEST(CookScene, WhatIsTriedAndDoesNotBindChangesNoChoice) {
+  test::TempFolder folder;
+  using Choice = std::tuple<std::string, CodecId, GeometryId>;
+  const auto choices = [&](const std::string& budget, bool try_all) {
+    const fs::path text = folder.write("scene.toml", "[scene]\nfor = \"balance\"\n" + budget +
+                                                         "[[object]]\nname = \"hero\"\n"
+                                                         "match = [\"Floor\"]\nfor = \"speed\"\n");
+    CookJob job = scene_job({kLevel}, folder.path() / "out.bxt", text);
+    job.options.may_use_arrays = true;
+    job.options.try_all = try_all;
+    const Summary summary = require(cook_job(job));
+    std::vector<Choice> chosen;
+    for (const CookedTree& tree : summary.trees) {
+      for (const Candidate& candidate : tree.contest.candidates) {
+        if (!candidate.rejected.empty()) continue;
+        chosen.emplace_back(tree.tree.name, candidate.codec, candidate.geometry);
+      }
+    }
+    return chosen;
+  };
+  const std::vector<Choice> free = choices("", false);
+  const auto is_fast = [](const Choice& choice) {
+    return std::get<GeometryId>(choice) == GeometryId::kArrays;
+  };
+  const auto is_small = [](const Choice& choice) {
+    return std::get<GeometryId>(choice) == GeometryId::kGrid;
+  };
+  EXPECT_EQ(std::count_if(free.begin(), free.end(), is_fast), 1);
+  EXPECT_GT(std::count_if(free.begin(), free.end(), is_small), 0);
+  EXPECT_EQ(choices("", true), free);
+  EXPECT_EQ(choices("[budget]\nbytes = 100000000\n", false), free);
+  EXPECT_EQ(choices("[budget]\nbytes_per_triangle = 5000\n", false), free);
+  EXPECT_EQ(choices("[budget]\nslowdown = 50\n", false), free);
 }
 
 // Each object has needs of its own: far scenery small, the rest fast, and the line that said so is
