@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/text/at_most.h"
 #include "format/container.h"
 #include "format/face_numbers.h"
 
@@ -206,14 +207,14 @@ class Account {
 
   static std::string geometry_reason(SectionKind kind, const EncodedTree& tree) {
     if (tree.geometry.geometry == GeometryId::kGrid) {
-      return fmt::format("grid, no vertex moved by more than {:.2g}",
-                         tree.geometry.max_vertex_error);
+      return "grid, " + moves_in_words(tree.geometry.max_vertex_error);
     }
     if (kind == SectionKind::kVertices) {
       if (tree.positions_f64) return "exact, f64";
       const double moved = tree.geometry.max_vertex_error;
-      return moved > 0 ? fmt::format("exact, f32, which moved a vertex by up to {:.2g}", moved)
-                       : "exact, f32";
+      return moved > 0
+                 ? fmt::format("exact, f32, which moved a vertex by up to {}", at_most(moved, 3))
+                 : "exact, f32";
     }
     return tree.geometry.corner_bytes == 2 ? "16 bits number every vertex"
                                            : "vertices take numbers of 32 bits";

@@ -22,6 +22,7 @@
 #include "cooker/cli/scene_info.h"
 #include "cooker/cli/surface_text.h"
 #include "cooker/export/decoded_faces.h"
+#include "cooker/text/at_most.h"
 #include "cooker/text/counted.h"
 #include "format/active_edges.h"
 #include "format/container.h"
@@ -223,10 +224,11 @@ std::string text_of_moves(const Json& tree) {
   const auto moved = tree["max_vertex_error"].get<double>();
   const Json& step = tree["grid_step"];
   if (!step.is_null()) {
-    return fmt::format("  grid: step 2^{}, no vertex moved by more than {:.3g}\n",
-                       std::ilogb(step.get<double>()), moved);
+    return fmt::format("  grid: step 2^{}, {}\n", std::ilogb(step.get<double>()),
+                       moves_in_words(moved));
   }
-  return moved > 0 ? fmt::format("  f32 moved a vertex by up to {:.3g}\n", moved) : std::string();
+  return moved > 0 ? fmt::format("  f32 moved a vertex by up to {}\n", at_most(moved, 3))
+                   : std::string();
 }
 
 // All bytes of the file, by the kind of section; the rest is what a reader opens it by.

@@ -20,6 +20,7 @@
 #include "cooker/cli/surface_text.h"
 #include "cooker/import/f32_digits.h"
 #include "cooker/import/file_error.h"
+#include "cooker/text/at_most.h"
 #include "cooker/text/counted.h"
 
 namespace boxtree::cooker {
@@ -109,7 +110,8 @@ void add_contest(const CookedTree& cooked, std::string& text) {
         candidate.rejected.empty() ? "" : "  ", candidate.rejected);
   }
   text += fmt::format(
-      "    times: means of a model that is the same on every machine: compare them with each other;\n"
+      "    times: means of a model, the same everywhere but for --costs: compare them with each "
+      "other;\n"
       "    boxes: {};\n"
       "    shallow: {}\n",
       kBoxMeaning, kShallowMeaning);
@@ -145,8 +147,8 @@ void add_import(const ImportReport& import, std::string& text) {
 
 void add_grid(const CookedTree& cooked, std::string& text) {
   if (cooked.tree.geometry.geometry != GeometryId::kGrid) return;
-  text += fmt::format("  grid: step 2^{}, no vertex moved by more than {:.3g}",
-                      cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error);
+  text += fmt::format("  grid: step 2^{}, {}", cooked.tree.geometry.grid_exponent,
+                      moves_in_words(cooked.tree.geometry.max_vertex_error));
   if (cooked.collapsed > 0) {
     text +=
         fmt::format("; {} lost {} area and {} kept", counted(cooked.collapsed, "triangle"),
@@ -425,8 +427,8 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
     // So small a move is noticed in tiny meshes alone (unnoticed_move).
     const bool is_tiny = import.moved_by_f32 <= std::numeric_limits<float>::denorm_min();
     warnings.push_back(fmt::format(
-        "{}: f32 has few digits for a mesh so {} and moved a vertex by up to {:.3g}; {}", source,
-        is_tiny ? "small" : "far from the origin", import.moved_by_f32, remedy));
+        "{}: f32 has few digits for a mesh so {} and moved a vertex by up to {}; {}", source,
+        is_tiny ? "small" : "far from the origin", at_most(import.moved_by_f32, 3), remedy));
   }
   if (import.has_f32_alone && import.moved_by_f32 == 0) {
     warnings.push_back(
@@ -446,9 +448,9 @@ std::vector<std::string> lost_surfaces(const std::vector<CookedTree>& trees) {
     if (cooked.collapsed == 0 || cooked.collapsed < kShareToWarnOf * all) continue;
     warnings.push_back(fmt::format(
         "tree {}: {} of {} triangles lost their area on a grid of step 2^{}, which moved a vertex "
-        "by up to {:.3g}; a smaller tolerance or more --grid-bits keep it, --exact keeps all",
+        "by up to {}; a smaller tolerance or more --grid-bits keep it, --exact keeps all",
         cooked.tree.name, cooked.collapsed, all, cooked.tree.geometry.grid_exponent,
-        cooked.tree.geometry.max_vertex_error));
+        at_most(cooked.tree.geometry.max_vertex_error, 3)));
   }
   return warnings;
 }

@@ -14,6 +14,7 @@
 #include "cooker/quantise/grid.h"
 #include "cooker/report/shell_word.h"
 #include "cooker/system/path.h"
+#include "cooker/text/at_most.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -339,8 +340,8 @@ std::string disturbance_in_words(const MeshTradeoff& mesh) {
 
 std::string move_in_words(const MeshTradeoff& mesh, double share) {
   return share == 0 ? "0"
-                    : fmt::format("{:.2g} of the diagonal ({:.2g} units of the mesh)", share,
-                                  share * mesh.diagonal);
+                    : fmt::format("{} of the diagonal ({} units of the mesh)", at_most(share, 2),
+                                  at_most(share * mesh.diagonal, 2));
 }
 
 }  // namespace boxtree::cooker
