@@ -52,8 +52,8 @@ struct Sample {
   QueryCost ns;
 };
 
-Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry,
-                      std::size_t runs) {
+Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry, std::size_t runs,
+                      TimedWork& timed_work) {
   SearchOptions options;
   options.codec = codec;
   options.geometry = geometry;
@@ -63,14 +63,16 @@ Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry
   const EncodedTree encoded = tried->take(0);
   const Result<Tree> tree = bind_encoded(encoded);
   if (!tree) return tree.error();
-  const Result<QueryCost> ns = time_queries(*tree, choice_queries(bounds_of(mesh)), runs);
+  const Workload queries = choice_queries(bounds_of(mesh));
+  const Result<QueryCost> ns = timed_work.add([&] { return time_queries(*tree, queries, runs); });
   if (!ns) return ns.error();
   return Sample{work, *ns};
 }
 
 Result<std::vector<Sample>> sample_all(
     std::span<const SourceMesh> meshes, const CodecInfo& codec, GeometryId geometry,
-    std::size_t runs, const std::function<void(const std::string& step)>& progress) {
+    std::size_t runs, TimedWork& timed_work,
+    const std::function<void(const std::string& step)>& progress) {
   std::vector<Sample> samples;
   for (const SourceMesh& mesh : meshes) {
     if (mesh.faces.empty()) continue;
@@ -78,7 +80,7 @@ Result<std::vector<Sample>> sample_all(
       progress(fmt::format("{}: {}, {} of {}", mesh.name, codec.name, geometry_name(geometry),
                            precision_name(mesh.positions.precision)));
     }
-    const Result<Sample> of_mesh = sample(mesh, codec.id, geometry, runs);
+    const Result<Sample> of_mesh = sample(mesh, codec.id, geometry, runs, timed_work);
     if (!of_mesh) return of_mesh.error();
     samples.push_back(*of_mesh);
   }
@@ -145,7 +147,7 @@ Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t ru
       for (const GeometryId geometry :
            {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
         if (!has_cost(codec.id, geometry, precision)) continue;
-        const auto samples = sample_all(sampled, codec, geometry, runs, progress);
+        const auto samples = sample_all(sampled, codec, geometry, runs, out.timed_work, progress);
         if (!samples) return samples.error();
         const CodecCost cost =
             fit(codec.id, geometry, precision, *samples, arrays ? &*arrays : nullptr);

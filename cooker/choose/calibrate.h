@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cooker/choose/cost.h"
+#include "cooker/choose/timed_work.h"
 #include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
@@ -16,6 +17,7 @@ struct Calibration {
   std::vector<CodecCost> costs;
   /// Largest ratio of modelled to measured time, or its inverse, over all meshes and kinds.
   double worst_ratio = 1;
+  TimedWork timed_work;  // all that was timed
 };
 
 /// Cooks each mesh with every codec and both geometry stores, runs the queries that candidates are

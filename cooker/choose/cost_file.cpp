@@ -92,7 +92,11 @@ std::string costs_to_json(const Calibration& calibration) {
     }
     costs.push_back(std::move(row));
   }
-  return Json{{"worst_ratio", calibration.worst_ratio}, {"costs", costs}}.dump(2);
+  return Json{{"worst_ratio", calibration.worst_ratio},
+              {"processor_share", calibration.timed_work.processor_share()},
+              {"speed_ratio", calibration.timed_work.speed_ratio()},
+              {"costs", costs}}
+      .dump(2);
 }
 
 Result<std::vector<CodecCost>> parse_costs(std::string_view text) {

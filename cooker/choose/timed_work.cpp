@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Compares processor time with elapsed time, and equal pieces of work with each other.
-#include "cooker/report/timed_work.h"
+#include "cooker/choose/timed_work.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+
+#include <fmt/format.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -67,6 +69,19 @@ bool TimedWork::lacks_processor() const noexcept {
 
 bool TimedWork::is_disturbed() const noexcept {
   return lacks_processor() || speed_ratio() > kMostSpeedRatio;
+}
+
+std::string TimedWork::disturbance() const {
+  if (!is_disturbed()) return {};
+  return lacks_processor()
+             ? fmt::format(
+                   "other programs had the processor for {:.0f} % of the time in which queries "
+                   "were timed",
+                   100 * (1 - processor_share()))
+             : fmt::format(
+                   "the processor took up to {:.0f} % longer for the same work at some times "
+                   "than at others while queries were timed",
+                   100 * (speed_ratio() - 1));
 }
 
 }  // namespace boxtree::cooker

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 
 #include "cooker/choose/measure.h"
 #include "cooker/system/process.h"
@@ -46,6 +47,8 @@ class TimedWork {
   /// Whether its times are not those of an idle machine: it lacks the processor, or this was
   /// slower at some times than at others.
   [[nodiscard]] bool is_disturbed() const noexcept;
+  /// What disturbed it, as the first half of a sentence; empty if nothing did.
+  [[nodiscard]] std::string disturbance() const;
 
  private:
   void add_piece();

@@ -203,6 +203,11 @@ int run_calibration(const BenchArguments& arguments) {
   }
   const Result<Calibration> calibration = calibrate(meshes, arguments.runs);
   if (!calibration) return fail(calibration.error());
+  if (const std::string why = calibration->timed_work.disturbance(); !why.empty()) {
+    warn(why +
+         ", so constants may be wrong, and what is chosen by them: measure again when the "
+         "machine, and its host, do nothing else");
+  }
   if (arguments.json) {
     print(parse_json(costs_to_json(*calibration)).value);
     return 0;

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "cooker/choose/cost.h"
+#include "cooker/choose/timed_work.h"
 #include "cooker/import/source_mesh.h"
 #include "cooker/proof/gates.h"
 #include "cooker/report/approximate.h"
 #include "cooker/report/pages.h"
-#include "cooker/report/timed_work.h"
 
 namespace boxtree::cooker {
 

@@ -322,18 +322,7 @@ std::string time_in_words(const MeshTradeoff& mesh, double nanoseconds) {
 
 std::string disturbance_in_words(const MeshTradeoff& mesh) {
   if (!has_disturbed_times(mesh)) return {};
-  const TimedWork& work = mesh.timed_work;
-  const std::string what =
-      work.lacks_processor()
-          ? fmt::format(
-                "other programs had the processor for {:.0f} % of the time in which queries "
-                "were timed",
-                100 * (1 - work.processor_share()))
-          : fmt::format(
-                "the processor took up to {:.0f} % longer for the same work at some times "
-                "than at others while queries were timed",
-                100 * (work.speed_ratio() - 1));
-  return what +
+  return mesh.timed_work.disturbance() +
          ", so times may be wrong; slowdowns, and what is recommended by them, are by counted "
          "work, as with --no-times. Measure again when the machine, and its host, do nothing else";
 }

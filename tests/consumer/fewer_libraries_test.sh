@@ -11,7 +11,7 @@ fail() { echo "fewer libraries: $*"; exit 1; }
 # shellcheck source=tests/consumer/quiet.sh
 . "$source/tests/consumer/quiet.sh"
 
-quiet cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE= \
+quiet cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= \
   -DBOXTREE_ASSIMP=OFF -DBOXTREE_BLOB=OFF -DBOXTREE_TBB=OFF -DBOXTREE_HTTP=OFF -DBOXTREE_BUILD_TESTS=OFF \
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0
 quiet cmake --build "$work/build" -j2 --target boxtree_cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // When other programs disturbed a measurement: by numbers, since times of tests depend on the
 // machine.
-#include "cooker/report/timed_work.h"
+#include "cooker/choose/timed_work.h"
 
 #include <gtest/gtest.h>
 

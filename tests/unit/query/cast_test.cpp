@@ -486,10 +486,11 @@ TEST_P(CastCases, AHullWhoseFaceIsNearlyParallelToAnEdge) {
       cast_closest(cooked.tree, hull,
                    Motion{{-4.076973645997261e+29, -5.261846226941239e+30, 8.587556375520465e+30}});
   ASSERT_TRUE(hit);
+  EXPECT_LE(hit->t - hit->t_lower, 6e-14);
+  if (GetParam().geometry == GeometryId::kGrid) return;  // is another triangle
   // By exact arithmetic: of the Minkowski difference of hull and triangle.
   EXPECT_LE(hit->t_lower, 0.828890762024);
   EXPECT_GE(hit->t, 0.828890762023);
-  EXPECT_LE(hit->t - hit->t_lower, 6e-14);
 }
 
 TEST_P(CastCases, AHullThatStaysOrStartsInContact) {
