@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cooker/import/text_tokens.h"
+#include "cooker/text/at_most.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 
@@ -91,10 +92,11 @@ std::string cook_remedy_of(F32Loss loss) {
 
 Status check_moved_by_f32(const SourceMesh& mesh, std::string_view what, double tolerance) {
   if (mesh.moved_by_f32 <= tolerance) return {};
-  return Error{Errc::kMeshUnsupported,
-               fmt::format("{}: f32 moves a vertex by up to {:.3g}, farther than the tolerance of "
-                           "{}; {}",
-                           what, mesh.moved_by_f32, tolerance, remedy_of(mesh.f32_loss))};
+  return Error{
+      Errc::kMeshUnsupported,
+      fmt::format("{}: f32 moves a vertex by up to {}, farther than the tolerance of "
+                  "{}; {}",
+                  what, at_most(mesh.moved_by_f32, 3), tolerance, remedy_of(mesh.f32_loss))};
 }
 
 }  // namespace boxtree::cooker

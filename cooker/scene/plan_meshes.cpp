@@ -13,6 +13,7 @@
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/precision.h"
 #include "cooker/scene/profile_fields.h"
+#include "cooker/text/at_most.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -316,12 +317,11 @@ Status MeshPlanner::decide_precision(std::uint32_t mesh) {
   if (planned.external) return {};
   const SourceMesh& source = scene_.meshes[mesh].mesh;
   if (planned.tolerance && source.moved_by_f32 > *planned.tolerance) {
-    return Error{
-        Errc::kMeshUnsupported,
-        fmt::format("{}:{}: {}; f32 moves a vertex of mesh \"{}\" by up to {:.3g}, farther "
-                    "than that; {}",
-                    profile_.path.string(), line, reason, source.name, source.moved_by_f32,
-                    cook_remedy_of(source.f32_loss))};
+    return Error{Errc::kMeshUnsupported,
+                 fmt::format("{}:{}: {}; f32 moves a vertex of mesh \"{}\" by up to {}, farther "
+                             "than that; {}",
+                             profile_.path.string(), line, reason, source.name,
+                             at_most(source.moved_by_f32, 3), cook_remedy_of(source.f32_loss))};
   }
   if (planned.exact) return {};
   decide(mesh, Aspect::kPrecision, !planned.tolerance, std::move(reason), line);

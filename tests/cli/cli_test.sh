@@ -115,7 +115,7 @@ expect 5 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-40
 grep -q 'a step of 2^-40' err
 # What a grid takes is told where it is half of the triangles or more, and is in the JSON where it is less.
 expect 0 "$boxtree" cook cube.obj -o grid.bxt --tolerance 100 --for memory --quiet --json
-same "$(cat err)" 'boxtree: warning: tree cube: 12 of 12 triangles lost their area on a grid of step 2^6, which moved a vertex by up to 1.73; a smaller tolerance or more --grid-bits keep it, --exact keeps all'
+same "$(cat err)" 'boxtree: warning: tree cube: 12 of 12 triangles lost their area on a grid of step 2^6, which moved a vertex by up to 1.74; a smaller tolerance or more --grid-bits keep it, --exact keeps all'
 same "boxtree: warning: $(jq -r '.warnings[]' out)" "$(cat err)"
 same "$(jq '.trees[0].lost_area' out)" 12
 expect 0 "$boxtree" cook cube.obj -o grid.bxt --tolerance 0.1 --for memory --json
@@ -1286,10 +1286,10 @@ expect 5 "$boxtree" cook tiny.obj -o tiny.bxt -q --tolerance 1e-51
 printf 'v %s\n' '459123.4321 5412345.6789 0' '459123.5321 5412345.6789 0' '459123.4321 5412345.7789 0' >far.obj
 printf 'f 1 2 3\n' >>far.obj
 expect 0 "$boxtree" cook far.obj -o far.bxt -q --json
-same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 keeps all digits, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
+same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.222; cook --f64 keeps all digits, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
 jq -e '.trees[0].import.moved_by_f32 | . > 0.2 and . < 0.3' out >/dev/null
 expect 5 "$boxtree" cook far.obj -o far.bxt -q --tolerance 0.001
-same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 keeps all digits'
+same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.222, farther than the tolerance of 0.001; --f64 keeps all digits'
 expect 5 "$boxtree" cook far.obj cube.obj -o far.bxt -q --tolerance 0.001
 # Found by an oracle: what is too little to be told was farther than a tolerance, too.
 printf 'v 0 0 0\nv 999.9999 0 0\nv 0 1 0\nf 1 2 3\n' >long.obj
@@ -1310,14 +1310,14 @@ expect 0 "$boxtree" info far.bxt --json
 jq -e '.trees[0] | .geometry != "grid" and .max_vertex_error > 0.2 and .max_vertex_error < 0.3' out >/dev/null
 printf '[scene]\nsource = "far.obj"\ntolerance = 0.001\n' >far.toml
 expect 5 "$boxtree" cook --profile far.toml -o far.bxt -q
-same "$(cat err)" 'boxtree: mesh_unsupported: far.toml:3: tolerance: at most 0.001 off in the world, 0.001 in the mesh at scale 1; f32 moves a vertex of mesh "far" by up to 0.221, farther than that; cook --f64 keeps all digits'
+same "$(cat err)" 'boxtree: mesh_unsupported: far.toml:3: tolerance: at most 0.001 off in the world, 0.001 in the mesh at scale 1; f32 moves a vertex of mesh "far" by up to 0.222, farther than that; cook --f64 keeps all digits'
 expect 0 "$boxtree" cook --profile far.toml -o far.bxt -q --f64
 same "$(cat err)" ''
 expect 0 "$boxtree" info far.bxt --json
 jq -e '.trees[0].max_vertex_error <= 0.001' out >/dev/null
 printf '[scene]\nsource = "far.obj"\nexact = true\n' >far.toml
 expect 0 "$boxtree" cook --profile far.toml -o far.bxt --why
-grep -q 'exact, f32, which moved a vertex by up to 0.22' out
+grep -q 'exact, f32, which moved a vertex by up to 0.222' out
 for options in --f64 '--f64 --tolerance 0.001'; do
   expect 0 "$boxtree" cook far.obj -o far.bxt -q $options
   same "$(cat err)" ''
@@ -1328,13 +1328,13 @@ expect 0 "$boxtree" query far.bxt ray --origin 459123.48,5412345.72,7 --directio
 same "$(jq .hit out)" true
 # The page of a report says how far f32 moved the mesh, and its tolerance counts that.
 expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.3
-same "$(grep -c 'moved a vertex by up to 0.221' err)" 1
+same "$(grep -c 'moved a vertex by up to 0.222' err)" 1
 for said in out far.html; do
   grep -q 'Reading the mesh as f32 moved a vertex by up to [0-9.]* of the diagonal (0.22 units of the mesh)' $said
 done
 grep -q 'surface within the tolerance of 0.3' out
 expect 5 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.001
-same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 keeps all digits'
+same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.222, farther than the tolerance of 0.001; --f64 keeps all digits'
 expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.001 --f64
 same "$(cat err)" ''
 grep -q 'Positions are f64' far.html
@@ -1358,13 +1358,13 @@ expect 0 "$boxtree" cook far.obj -o far.bxt -q --f64
 expect 0 "$boxtree" export far.bxt --triangles -o placed.glb
 for options in '' --exact; do
   expect 0 "$boxtree" cook placed.glb -o placed.bxt -q $options
-  same "$(cat err)" 'boxtree: warning: placed.glb: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 or a scene (--scene) keeps the places of its nodes, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
+  same "$(cat err)" 'boxtree: warning: placed.glb: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.222; cook --f64 or a scene (--scene) keeps the places of its nodes, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
   expect 0 "$boxtree" info placed.bxt --json
   jq -e '.trees[0].max_vertex_error > 0.2 and .trees[0].max_vertex_error < 0.3' out >/dev/null
 done
 for command in 'cook -o placed.bxt' 'report -o placed.html --quick --no-times'; do
   expect 5 "$boxtree" $command placed.glb -q --tolerance 0.001
-  same "$(cat err)" 'boxtree: mesh_unsupported: placed.glb: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 or a scene (--scene) keeps the places of its nodes'
+  same "$(cat err)" 'boxtree: mesh_unsupported: placed.glb: f32 moves a vertex by up to 0.222, farther than the tolerance of 0.001; --f64 or a scene (--scene) keeps the places of its nodes'
 done
 for options in --f64 '--f64 --tolerance 0.001' '--scene --tolerance 0.001'; do
   expect 0 "$boxtree" cook placed.glb -o placed.bxt -q $options
@@ -1379,9 +1379,9 @@ done
   printf 'vertex 459123.4321 5412345.7789 0\nendloop\nendfacet\nendsolid far\n'
 } >far.stl
 expect 5 "$boxtree" cook far.stl -o stl.bxt -q --tolerance 0.001
-same "$(cat err)" 'boxtree: mesh_unsupported: far.stl: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 keeps all digits'
+same "$(cat err)" 'boxtree: mesh_unsupported: far.stl: f32 moves a vertex by up to 0.222, farther than the tolerance of 0.001; --f64 keeps all digits'
 expect 0 "$boxtree" cook far.stl -o stl.bxt -q
-grep -q '^boxtree: warning: far.stl: f32 has few digits .* moved a vertex by up to 0.221; cook --f64 keeps all digits, and with' err
+grep -q '^boxtree: warning: far.stl: f32 has few digits .* moved a vertex by up to 0.222; cook --f64 keeps all digits, and with' err
 expect 0 "$boxtree" cook far.stl -o stl.bxt -q --f64
 same "$(cat err)" ''
 expect 0 "$boxtree" query stl.bxt point --at 459123.4321,5412345.6789,7 --json
