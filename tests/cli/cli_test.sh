@@ -1330,7 +1330,7 @@ same "$(jq .hit out)" true
 expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.3
 same "$(grep -c 'moved a vertex by up to 0.222' err)" 1
 for said in out far.html; do
-  grep -q 'Reading the mesh as f32 moved a vertex by up to [0-9.]* of the diagonal (0.22 units of the mesh)' $said
+  grep -q 'Reading the mesh as f32 moved a vertex by up to [0-9.]* of the diagonal (0.23 units of the mesh)' $said
 done
 grep -q 'surface within the tolerance of 0.3' out
 expect 5 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.001
