@@ -493,6 +493,38 @@ TEST_P(CastCases, AHullWhoseFaceIsNearlyParallelToAnEdge) {
   EXPECT_GE(hit->t, 0.828890762023);
 }
 
+// The same of many, of coordinates that are few and rounded: one of 200 was late.
+TEST_P(CastCases, HullsOfFewCoordinatesAreNotLate) {
+  std::mt19937 random(5);
+  const auto number = [&](int most, float unit) {
+    return static_cast<float>(static_cast<int>(random() % (2 * most + 1)) - most) * unit;
+  };
+  const auto point = [&](int most, float unit) {
+    const double x = number(most, unit), y = number(most, unit);
+    return Eigen::Vector3d(x, y, number(most, unit));
+  };
+  SourceMesh mesh;
+  for (std::uint32_t i = 0; i < 60; i += 3) {
+    for (int k = 0; k < 9; ++k) mesh.positions.f32.push_back(number(10, 0.1f));
+    mesh.faces.push_back({{i, i + 1, i + 2, cooker::kNoCorner}});
+  }
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  int hits = 0;
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<Eigen::Vector3d> points(4 + i % 6);
+    for (Eigen::Vector3d& p : points) p = point(3, 0.23f);
+    const Motion motion{point(9, 1)};
+    if (motion.direction.isZero(0)) continue;
+    const ConvexHull hull{points, point(9, 0.1f) - motion.direction, {1, 0, 0, 0}};
+    const CastResult hit = cast_closest(cooked.tree, hull, motion);
+    if (!hit || hit->initially_touching) continue;
+    ++hits;
+    const double nearer = (hit->t - hit->t_lower) * std::abs(hit->normal.dot(motion.direction));
+    ASSERT_LE(nearer, 4 * 0x1p-46 * 12) << i;  // no coordinate is larger
+  }
+  EXPECT_GT(hits, 1000);
+}
+
 TEST_P(CastCases, AHullThatStaysOrStartsInContact) {
   std::vector<Eigen::Vector3d> points = cube();
   const ConvexHull hull = scaled_to(points, {0.25, 0.25, 0.25}, {0, 0, 0.125});
