@@ -470,8 +470,7 @@ void add_report_command(Command& program, int& status) {
           "--f64", arguments->f64,
           "Hold positions as f64, not f32, for meshes far from the origin: all digits of OBJ, "
           "OFF, PLY and text STL files, and what nodes of others place [for PLY files whose "
-          "doubles "
-          "f32 does not hold]")
+          "doubles f32 does not hold]")
       ->excludes(paper);
   command
       .add_option(

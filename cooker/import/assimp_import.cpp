@@ -159,11 +159,12 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, ReadOrder 
 
 // Faces have their own materials, or none. A file without any is left to has_no_materials.
 Status check_materials(const ImportOptions& options, const SourceUse& use, const aiScene& scene) {
+  if (!options.materials || use.guessed_material.empty()) return {};
   const bool has_some = std::any_of(
       scene.mMaterials, scene.mMaterials + scene.mNumMaterials, [](const aiMaterial* material) {
         return std::string_view(material->GetName().C_Str()) != kDefaultMaterial;
       });
-  if (!options.materials || use.guessed_material.empty() || !has_some) return {};
+  if (!has_some) return {};
   return Error{Errc::kImportFailed,
                fmt::format("assimp's reader gives faces without a material that of others, and "
                            "says: {}; give each a material, or cook without --materials",
