@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -180,21 +179,22 @@ TEST(ParsedJson, HasTheLastOfMembersWithOneNameInThePlaceOfTheFirst) {
 TEST(ParsedJson, MayHaveVeryManyMembers) {
   constexpr std::uint64_t kMany = 300'000;
   std::string text = "{";
-  for (std::uint64_t i = 0; i < kMany; ++i) text += fmt::format("\"k{}\":{},", i * 7919 % kMany, i);
+  for (std::uint64_t i = 0; i < kMany; ++i)
+    text += "\"k" + std::to_string(i * 7919 % kMany) + "\":" + std::to_string(i) + ",";
   Json value = parse_json(text + "\"last\":7}").value;
   EXPECT_EQ(value.size(), kMany + 1);
   const auto expect_all = [&] {
     for (std::uint64_t i = 0; i < kMany; ++i) {
-      const Json* const found = value.find(fmt::format("k{}", i * 7919 % kMany));
+      const Json* const found = value.find("k" + std::to_string(i * 7919 % kMany));
       ASSERT_TRUE(found != nullptr && found->get<std::uint64_t>() == i);
     }
   };
   expect_all();
   EXPECT_EQ(value.find("k"), nullptr);
-  EXPECT_EQ(value.find(fmt::format("k{}", kMany)), nullptr);
+  EXPECT_EQ(value.find("k" + std::to_string(kMany)), nullptr);
   EXPECT_EQ(value.items().front().key, "k0");
   EXPECT_EQ(value.items().back().key, "last");
-  for (int i = 0; i < 1000; ++i) value[fmt::format("added {}", i)] = i;
+  for (int i = 0; i < 1000; ++i) value["added " + std::to_string(i)] = i;
   value["last"] = 8;
   expect_all();
   EXPECT_EQ(value["last"].get<std::uint32_t>(), 8u);
@@ -206,11 +206,11 @@ TEST(ParsedJson, MayHaveVeryManyMembers) {
 TEST(JsonObjects, FindTheirMembersHoweverManyThereAre) {
   Json value = Json::object();
   for (int count = 0; count < 40; ++count) {
-    EXPECT_EQ(value.find(fmt::format("k{}", count)), nullptr);
-    value[fmt::format("k{}", count)] = count;
+    EXPECT_EQ(value.find("k" + std::to_string(count)), nullptr);
+    value["k" + std::to_string(count)] = count;
     const Json copy = value;
     for (int i = 0; i <= count; ++i) {
-      const std::string name = fmt::format("k{}", i);
+      const std::string name = "k" + std::to_string(i);
       ASSERT_NE(copy.find(name), nullptr);
       EXPECT_EQ(copy.find(name)->get<std::uint32_t>(), static_cast<std::uint32_t>(i));
     }
