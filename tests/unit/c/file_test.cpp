@@ -172,8 +172,9 @@ TEST(CFiles, MembersOfAPackAreFiles) {
       members.push_back(std::move(member));
     }
   }
-  const std::string path = (folder.path() / "all.bxt").string();
-  ASSERT_TRUE(cooker::write_pack(path, members, open).ok());
+  const std::filesystem::path written = folder.path() / "all.bxt";
+  ASSERT_TRUE(cooker::write_pack(written, members, open).ok());
+  const std::string path = written.string();
   const File file = test::require(File::open(path));
   bxt_file* pack = nullptr;
   ASSERT_EQ(bxt_file_open(path.c_str(), nullptr, &pack, nullptr), BXT_OK);
