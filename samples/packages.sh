@@ -52,6 +52,7 @@ if [ "${BASH_SOURCE[0]}" = "$0" ]; then
         read -ra list -d '' <<<"${!name}" || true # true only at a delimiter, which a list has none of
         packages+=("${list[@]}")
         ;;
+      *[A-Z]*) refuse "no list '$name'" ;; # names of packages are in small letters
       *) packages+=("$name") ;;
     esac
   done
