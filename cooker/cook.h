@@ -76,6 +76,8 @@ struct Summary {
   std::vector<CookedTree> trees;  // in file order; without the bytes of nodes and geometry
   std::vector<ImportReport> imports;
   std::vector<std::filesystem::path> files_read;
+  std::string
+      costs_disturbance;  // of times that costs of a file come from; empty if there was none
   std::uint64_t file_bytes = 0;
   std::optional<SceneSummary> scene;  // empty without a top level
   std::vector<WhyLine> why;           // the bytes of kept parts add up to the size of the file

@@ -49,6 +49,15 @@ Result<StepCost> parse_steps(const Json& row, const std::string& place, const ch
   return StepCost{steps[0], steps[1], steps[2]};
 }
 
+// A number of at least `least`, 1 if there is none.
+Result<double> parse_measure(const Json& document, const char* key, double least) {
+  const Json* const found = document.find(key);
+  if (found == nullptr) return 1.0;
+  const double value = found->is_number() ? found->get<double>() : -1;
+  if (value >= least && std::isfinite(value)) return value;
+  return fault(fmt::format("expected \"{}\", {} or more, found {}", key, least, found->dump()));
+}
+
 Result<CodecCost> parse_row(const Json& row, std::size_t number) {
   if (!row.is_object()) return fault(fmt::format("row {}: expected an object", number));
   const std::string codec = text_member(row, "codec");
@@ -99,7 +108,7 @@ std::string costs_to_json(const Calibration& calibration) {
       .dump(2);
 }
 
-Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
+Result<Calibration> parse_costs(std::string_view text) {
   const ParsedJson parsed = parse_json(text);
   if (parsed.fault != ParsedJson::Fault::kNone)
     return fault("expected JSON, as `bench --calibrate --json` prints it");
@@ -108,7 +117,16 @@ Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
     return fault(
         "expected an object with an array \"costs\", as `bench --calibrate --json` prints it");
   }
-  std::vector<CodecCost> costs;
+  Calibration calibration;
+  const Result<double> worst_ratio = parse_measure(parsed.value, "worst_ratio", 1);
+  if (!worst_ratio) return worst_ratio.error();
+  calibration.worst_ratio = *worst_ratio;
+  const Result<double> processor_share = parse_measure(parsed.value, "processor_share", 0);
+  if (!processor_share) return processor_share.error();
+  const Result<double> speed_ratio = parse_measure(parsed.value, "speed_ratio", 1);
+  if (!speed_ratio) return speed_ratio.error();
+  calibration.timed_work = TimedWork(*processor_share, 1, *speed_ratio);
+  std::vector<CodecCost>& costs = calibration.costs;
   for (std::size_t i = 0; i < rows->size(); ++i) {
     const Result<CodecCost> cost = parse_row((*rows)[i], i);
     if (!cost) return cost.error();
@@ -127,15 +145,16 @@ Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
       }
     }
   }
-  return costs;
+  return calibration;
 }
 
-Result<std::vector<CodecCost>> read_costs(const std::filesystem::path& path) {
+Result<Calibration> read_costs(const std::filesystem::path& path) {
   const Result<std::string> text = read_whole_file(path, kMaxCostsBytes);
   if (!text) return text.error();
-  Result<std::vector<CodecCost>> costs = parse_costs(*text);
-  if (!costs) return Error{costs.code(), path.string() + ": " + costs.error().detail};
-  return costs;
+  Result<Calibration> calibration = parse_costs(*text);
+  if (!calibration)
+    return Error{calibration.code(), path.string() + ": " + calibration.error().detail};
+  return calibration;
 }
 
 }  // namespace boxtree::cooker

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <boxtree/error.h>
 
@@ -18,10 +17,11 @@ namespace boxtree::cooker {
 
 /// The constants in a JSON text. Every codec needs exactly one row for each of exact and grid, and
 /// every kind of query three steps that are finite, not negative and not all zero, because a
-/// missing step would count as free. Error: kDocumentInvalid with the place and what was expected.
-Result<std::vector<CodecCost>> parse_costs(std::string_view text);
+/// missing step would count as free; how they were measured may be missing. Error: kDocumentInvalid
+/// with the place and what was expected.
+Result<Calibration> parse_costs(std::string_view text);
 
 /// The same from a file; errors include its path.
-Result<std::vector<CodecCost>> read_costs(const std::filesystem::path& path);
+Result<Calibration> read_costs(const std::filesystem::path& path);
 
 }  // namespace boxtree::cooker

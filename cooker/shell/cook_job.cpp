@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,9 +59,10 @@ class Job {
  private:
   Status read_settings() {
     if (!job_.costs.empty()) {
-      Result<std::vector<CodecCost>> costs = read_costs(job_.costs);
-      if (!costs) return costs.error();
-      options_.costs = std::move(*costs);
+      Result<Calibration> calibration = read_costs(job_.costs);
+      if (!calibration) return calibration.error();
+      options_.costs = std::move(calibration->costs);
+      disturbance_ = calibration->timed_work.disturbance();
     }
     if (!job_.profile.empty()) {
       Result<Profile> profile = read_profile(job_.profile);
@@ -103,6 +105,7 @@ class Job {
                                 import.files_read.end());
     }
     if (!job_.costs.empty()) summary.files_read.push_back(job_.costs);
+    summary.costs_disturbance = std::move(disturbance_);
     if (Status status = check_outputs(output_files(job_), summary.files_read); !status)
       return status.error();
     // Written first, so that an error in it leaves no new output without a depfile.
@@ -165,6 +168,7 @@ class Job {
   const CookJob& job_;
   CookOptions options_;
   Profile profile_;
+  std::string disturbance_;           // of the times that job_.costs come from
   bool is_mesh_replaceable_ = false;  // the one at the place of the reordered mesh
   const Progress& progress_;
 };

@@ -10,9 +10,9 @@ namespace boxtree::fuzz {
 
 void run(Bytes input) {
   const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
-  const auto costs = cooker::parse_costs(text);
-  if (!costs && costs.code() != Errc::kDocumentInvalid) finding("an error of another kind");
-  if (costs && costs->empty()) finding("costs of nothing");
+  const auto parsed = cooker::parse_costs(text);
+  if (!parsed && parsed.code() != Errc::kDocumentInvalid) finding("an error of another kind");
+  if (parsed && parsed->costs.empty()) finding("costs of nothing");
 }
 
 }  // namespace boxtree::fuzz

@@ -26,8 +26,11 @@ Calibration compiled() {
 TEST(CostFile, GivesBackWhatWasWritten) {
   const test::TempFolder folder;
   const auto path = folder.write("costs.json", costs_to_json(compiled()));
-  const std::vector<CodecCost> read = require(read_costs(path));
+  const Calibration calibration = require(read_costs(path));
+  const std::vector<CodecCost>& read = calibration.costs;
   ASSERT_EQ(read.size(), compiled_costs().size());
+  EXPECT_EQ(calibration.worst_ratio, 1.5);
+  EXPECT_EQ(calibration.timed_work.disturbance(), "");
   const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {3, 3}}};
   for (const CodecInfo& codec : kCodecs) {
     for (const GeometryId geometry : {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
@@ -85,11 +88,31 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
               j["costs"][0]["ray"] = {{"query_ns", 0}, {"node_ns", 0}, {"leaf_ns", 0}};
             }),
             "costs: plain-f32, arrays, ray: all steps are 0, but no query is free");
+  EXPECT_EQ(refusal([](Json& j) { j["processor_share"] = -0.5; }),
+            "costs: expected \"processor_share\", 0 or more, found -0.5");
+  EXPECT_EQ(refusal([](Json& j) { j["speed_ratio"] = "1"; }),
+            "costs: expected \"speed_ratio\", 1 or more, found \"1\"");
+  EXPECT_EQ(refusal([](Json& j) { j["worst_ratio"] = 0.5; }),
+            "costs: expected \"worst_ratio\", 1 or more, found 0.5");
   EXPECT_EQ(parse_costs("{").error().detail,
             "costs: expected JSON, as `bench --calibrate --json` prints it");
   // Numbers that double cannot hold.
   EXPECT_FALSE(parse_costs(R"({"costs":[{"codec":"wide8","geometry":"exact","ray":)"
                            R"({"query_ns":1e999,"node_ns":1,"leaf_ns":1}}]})"));
+}
+
+// Found by a newcomer: constants that a warning had called wrong chose without another.
+TEST(CostFile, TellsHowItWasMeasured) {
+  Json document = Json::parse(costs_to_json(compiled()));
+  document["speed_ratio"] = 1.45;
+  EXPECT_EQ(require(parse_costs(document.dump())).timed_work.disturbance(),
+            TimedWork(1, 1, 1.45).disturbance());
+  document["processor_share"] = 0.25;
+  EXPECT_EQ(require(parse_costs(document.dump())).timed_work.disturbance(),
+            TimedWork(0.25, 1, 1.45).disturbance());
+  // Files of earlier versions do not say.
+  for (const char* key : {"processor_share", "speed_ratio", "worst_ratio"}) document.erase(key);
+  EXPECT_EQ(require(parse_costs(document.dump())).timed_work.disturbance(), "");
 }
 
 // On a machine where wide4 were a hundred times as fast, it would be the fastest.
