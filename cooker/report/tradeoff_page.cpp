@@ -14,6 +14,7 @@
 #include "cooker/import/f32_digits.h"
 #include "cooker/report/approximate_page.h"
 #include "cooker/report/tradeoff_advice.h"
+#include "cooker/text/at_most.h"
 #include "cooker/text/counted.h"
 
 namespace boxtree::cooker {
@@ -54,6 +55,10 @@ double plotted_time(const MeshTradeoff& mesh, const TradePoint& point, std::size
 
 std::string figure(double value) {
   return value == 0 ? "0" : fmt::format("{:.2g}", value);
+}
+// The largest of some values, or a bound of them: as sentences say it.
+std::string largest_figure(double value) {
+  return value == 0 ? "0" : at_most(value, 2);
 }
 std::string signed_percent(double share) {
   return fmt::format("{:+.1f} %", 100 * share);
@@ -103,8 +108,8 @@ std::vector<PagePlot::Series> codec_series(const MeshTradeoff& mesh, std::size_t
       series.points.push_back(
           {x_of(point), time, point.grid_bits == 0 ? "" : std::to_string(point.grid_bits),
            radius_of(each),
-           fmt::format("{}: {:.2f} bytes per triangle, {}, surface moved by {:.2g}", point.name(),
-                       each, time_in_words(time), point.surface_max)});
+           fmt::format("{}: {:.2f} bytes per triangle, {}, surface moved by {}", point.name(), each,
+                       time_in_words(time), largest_figure(point.surface_max))});
     };
     for (const bool on_grid : {true, false}) {
       for (const TradePoint& point : mesh.points) {
@@ -239,7 +244,7 @@ PageSection advice_section(const MeshTradeoff& mesh) {
                fmt::format("{:.2f}", mesh.per_triangle(point.bytes.queried())),
                fmt::format("{:.0f} %", 100.0 * static_cast<double>(point.bytes.total()) /
                                            static_cast<double>(mesh.source.total())),
-               figure(point.surface_max)};
+               largest_figure(point.surface_max)};
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       row.push_back(time_in_words(mesh, mean_time_of(mesh, point, kind)));
     }
@@ -337,9 +342,10 @@ PageSection gates_section(const MeshTradeoff& mesh) {
     table.rows.push_back(
         {point.name(), point.gates.pass() ? "pass" : "FAILED", std::to_string(point.gates.missed),
          std::to_string(point.gates.escapes), point.gates.certificate ? "valid" : "invalid",
-         figure(point.surface_max), figure(point.surface_rms), figure(point.surface_bound),
-         figure(point.answers.distance_max), figure(point.answers.distance_median),
-         figure(point.answers.ray_median), fmt::format("{:.0f}", point.answers.flips_per_million)});
+         largest_figure(point.surface_max), figure(point.surface_rms),
+         largest_figure(point.surface_bound), largest_figure(point.answers.distance_max),
+         figure(point.answers.distance_median), figure(point.answers.ray_median),
+         fmt::format("{:.0f}", point.answers.flips_per_million)});
   }
   return {mesh.name + ": gates and errors",
           "An encoding that misses a face or lets one stick out of a box above it is listed as "
