@@ -7,14 +7,9 @@
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/distance_walk.h"
 #include "runtime/query/invalid_query.h"
-#include "runtime/tree/root_box.h"
-#include "runtime/walk/erased_codec.h"
 
 namespace boxtree {
 namespace {
-
-// Most of its time goes into distances of boxes, so one walk serves all codecs.
-using Walk = DistanceWalk<ErasedCodec, ErasedCodec>;
 
 struct Placed {
   const BoundTree& first;
@@ -24,7 +19,8 @@ struct Placed {
   const WorldMetric& metric;
 };
 
-Distance answer(const Placed& placed, const Walk& walk, const Approximation& approximation) {
+Distance answer(const Placed& placed, const DistanceWalk& walk,
+                const Approximation& approximation) {
   Distance result;
   result.nodes_expanded = walk.visited();
   result.converged = !walk.is_spent();
@@ -70,8 +66,7 @@ Result<Distance> distance(const Tree& first_tree, const Pose& first_pose, const 
   approximation.absolute_error = metric->from_world_above(options.absolute_error);
   approximation.max_distance = metric->from_world_above(options.max_distance);
   const Placed placed{first, first_pose, second, *pose, *metric};
-  Walk walk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, *pose, *metric,
-            approximation);
+  DistanceWalk walk(first, second, *pose, *metric, approximation);
   if (const Errc error = walk.run(); error != Errc::kOk) return error;
   return answer(placed, walk, approximation);
 }

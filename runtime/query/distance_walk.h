@@ -1,63 +1,63 @@
 // SPDX-License-Identifier: MIT
-// The search for the distance of two trees, over any pair of codecs. Implements boxtree/distance.h.
+// The search for the distance of two trees. Implements boxtree/distance.h.
 //
 // Every pair of nodes has a key, the squared lower bound of its boxes' distance, never above that
 // of anything inside. Pairs are expanded in the order of their keys, so a larger allowed error
 // expands the same pairs in the same order and stops sooner. The answer's lower bound is the least
 // of the keys of all skipped pairs and of the bounds of all triangles compared.
+//
+// What makes the search short are axes along and across the line between the nearest points so far.
+// Boxes reach far beyond what they hold along them; so the extents of nodes and leaves are learnt
+// from what was read below them (KnownExtents), and the keys of waiting pairs grow with them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
-#include "runtime/primitive/rounding.h"
+#include "runtime/query/known_extents.h"
 #include "runtime/query/nearest_triangles.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/relative_pose.h"
 #include "runtime/query/world_metric.h"
 #include "runtime/tree/bound_tree.h"
+#include "runtime/tree/root_box.h"
+#include "runtime/walk/erased_codec.h"
 #include "runtime/walk/frontier.h"
-#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 
-/// One query. Everything passed by reference must outlive it.
-template <NodeDecoder A, NodeDecoder B>
+/// One query. Everything passed by reference must outlive it. Most of its time goes into distances
+/// of boxes, so one walk serves all codecs.
 class DistanceWalk {
  public:
   /// `approximation` is in the metric's units.
-  DistanceWalk(const BoundTree& first, const A& first_codec, const BoundTree& second,
-               const B& second_codec, const RelativePose& pose, const WorldMetric& metric,
-               const Approximation& approximation) noexcept
-      : first_(first),
-        second_(second),
-        first_codec_(first_codec),
-        second_codec_(second_codec),
-        pose_(pose),
+  DistanceWalk(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
+               const WorldMetric& metric, const Approximation& approximation) noexcept
+      : sides_{{{first, pose.to_second(), metric.in_first()},
+                {second, pose.to_first(), metric.in_second()}}},
         metric_(metric),
         node_budget_(approximation.node_budget),
         bound_(first, second, nullptr),
         nearest_(first, second, pose, metric, approximation) {}
 
   Errc run() noexcept {
-    const Entry root{root_box<typename A::Scalar>(first_),
-                     root_box<typename B::Scalar>(second_),
-                     first_.root_ref(),
-                     second_.root_ref(),
-                     first_.is_leaf(),
-                     second_.is_leaf()};
-    const Box<double> image = pose_.hull_in_first(root.second_box);
-    nearest_.face(metric_.to_world(center(image) - center(root.first_box)));
-    const double root_key = std::max({metric_.in_first().squared_distance(root.first_box, image),
-                                      metric_.in_second().squared_distance(
-                                          pose_.to_second().hull(root.first_box), root.second_box),
-                                      nearest_.direction().squared_distance(
-                                          nearest_.direction().end_of_first(root.first_box),
-                                          nearest_.direction().end_of_second(root.second_box))});
+    Entry root;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const BoundTree& tree = *sides_[s].codec.tree;
+      root.box[s] = root_box<double>(tree);
+      root.ref[s] = tree.root_ref();
+      root.is_leaf[s] = tree.is_leaf();
+    }
+    const Box<double> image = sides_[1].to_other.hull(root.box[1]);
+    nearest_.face(metric_.to_world(center(image) - center(root.box[0])));
+    const double root_key = std::max(
+        {sides_[0].gaps.squared_distance(root.box[0], image),
+         sides_[1].gaps.squared_distance(sides_[0].to_other.hull(root.box[0]), root.box[1]),
+         nearest_.axes().squared_distance(extent_of(root, 0), extent_of(root, 1))});
     if (!frontier_.push(root_key, nearest_.enough(), root)) return Errc::kInternal;
     double key = 0;
     Entry entry;
@@ -68,7 +68,7 @@ class DistanceWalk {
         break;
       }
       ++visited_;
-      const Errc error = visit(entry);
+      const Errc error = visit(entry, key);
       if (error != Errc::kOk) return error;
     }
     return Errc::kOk;
@@ -77,29 +77,37 @@ class DistanceWalk {
   [[nodiscard]] const NearestPair& nearest() const noexcept { return nearest_.pair(); }
   [[nodiscard]] std::uint64_t visited() const noexcept { return visited_; }
   [[nodiscard]] bool is_spent() const noexcept { return is_spent_; }
-  /// The lower bound of the distance. The root of a rounded square may be above the square by a
-  /// factor of 1 + u.
+  /// The lower bound of the distance.
   [[nodiscard]] double lower() const noexcept {
-    constexpr double kLess = 1 - 2 * kRoundoffF64;
-    const double left = std::sqrt(std::min(nearest_.left(), frontier_.least_left())) * kLess;
+    const double left = root_below(std::min(nearest_.left(), frontier_.least_left()));
     return std::min({left, nearest_.pair().lower, nearest_.pair().upper});
   }
 
  private:
-  struct Entry {
-    Box<typename A::Scalar> first_box;
-    Box<typename B::Scalar> second_box;
-    NodeRef first;
-    NodeRef second;
-    bool first_leaf;
-    bool second_leaf;
+  // What is of one tree. Its boxes are compared in its own space with those of the other tree, and
+  // moved in the other's.
+  struct Side {
+    Side(const BoundTree& tree, const AffineMap& to_other_tree, const GapWeights& weights) noexcept
+        : codec{&tree}, to_other(to_other_tree), gaps(weights) {}
+
+    ErasedCodec codec;
+    const AffineMap& to_other;
+    const GapWeights& gaps;
+    ErasedCodec::Children children;
+    std::array<Box<double>, ErasedCodec::Children::kWidth> extents;  // of the children
   };
+  // A subtree of each tree.
+  struct Entry {
+    std::array<Box<double>, 2> box;
+    std::array<NodeRef, 2> ref;
+    std::array<bool, 2> is_leaf;
+  };
+
   // One side is expanded at a time: a path is as long as the depths of both trees together, and
   // each step leaves all but one child of a node pending.
+  static constexpr std::size_t kWidth = ErasedCodec::Children::kWidth;
   static constexpr std::size_t kQueue = 2048;
-  static constexpr std::size_t kStack =
-      A::kDepthLimit * (A::Children::kWidth - 1) + B::kDepthLimit * (B::Children::kWidth - 1) + 1;
-  static constexpr std::size_t kWidth = std::max(A::Children::kWidth, B::Children::kWidth);
+  static constexpr std::size_t kStack = 2 * ErasedCodec::kDepthLimit * (kWidth - 1) + 1;
 
   // Until some triangles have been compared the walk is depth-first, to the nearest child of the
   // pair expanded last; from then on the nearest pair of all is next.
@@ -110,70 +118,78 @@ class DistanceWalk {
       entry = next_;
       return true;
     }
-    return frontier_.pop(nearest_.enough(), key, entry);
+    return frontier_.pop(nearest_.enough(), key, entry, [&](const Entry& waiting) {
+      return nearest_.axes().squared_distance(extent_of(waiting, 0), extent_of(waiting, 1));
+    });
   }
 
-  Errc visit(const Entry& entry) noexcept {
-    if (entry.first_leaf && entry.second_leaf) {
-      const Errc error = bound_.compare(entry.first, entry.second);
-      return error != Errc::kOk ? error : nearest_.compare(entry.first, entry.second);
+  // The extent of a subtree along the axes: what is known of it, or that of its box.
+  [[nodiscard]] Box<double> extent_of(std::size_t side, NodeRef ref, bool is_leaf,
+                                      const Box<double>& box) noexcept {
+    const Box<double>* const known = nearest_.known(side).find(ref, is_leaf);
+    return known ? *known : nearest_.axes().extent_of(side, box);
+  }
+  [[nodiscard]] Box<double> extent_of(const Entry& entry, std::size_t side) noexcept {
+    return extent_of(side, entry.ref[side], entry.is_leaf[side], entry.box[side]);
+  }
+
+  Errc visit(const Entry& entry, double key) noexcept {
+    if (entry.is_leaf[0] && entry.is_leaf[1]) {
+      const Errc error = bound_.compare(entry.ref[0], entry.ref[1]);
+      return error != Errc::kOk ? error : nearest_.compare(entry.ref[0], entry.ref[1], key);
     }
     // The larger box is expanded, a leaf never. A pair (a, b) is visited once: only one of the
     // pairs (parent of a, b) and (a, parent of b) arises, the one that their common parent pair
     // chose.
-    const Box<double> image = pose_.hull_in_first(entry.second_box);
-    if (!entry.first_leaf && (entry.second_leaf || extent(entry.first_box) > extent(image))) {
-      const Errc error =
-          bound_.count(first_codec_.expand(entry.first, entry.first_box, first_children_));
-      if (error != Errc::kOk) return error;
-      const double second_end = nearest_.direction().end_of_second(entry.second_box);
-      return intersect_children(
-          first_children_,
-          [&](const Box<typename A::Scalar>& box) {
-            double key = nearest_.direction().squared_distance(
-                nearest_.direction().end_of_first(box), second_end);
-            if (!(key < nearest_.enough())) return key;
-            key = std::max(key, metric_.in_first().squared_distance(box, image));
-            if (!(key < nearest_.enough())) return key;
-            return std::max(key, metric_.in_second().squared_distance(pose_.to_second().hull(box),
-                                                                      entry.second_box));
-          },
-          [&](std::uint32_t i) {
-            return Entry{first_children_.box(i), entry.second_box,           first_children_.ref[i],
-                         entry.second,           first_children_.is_leaf(i), entry.second_leaf};
-          });
-    }
-    const Errc error =
-        bound_.count(second_codec_.expand(entry.second, entry.second_box, second_children_));
+    const std::size_t s =
+        !entry.is_leaf[0] && (entry.is_leaf[1] ||
+                              extent(entry.box[0]) > extent(sides_[1].to_other.hull(entry.box[1])))
+            ? 0
+            : 1;
+    Side& side = sides_[s];
+    const Side& other = sides_[1 - s];
+    ErasedCodec::Children& children = side.children;
+    const Errc error = bound_.count(side.codec.expand(entry.ref[s], entry.box[s], children));
     if (error != Errc::kOk) return error;
-    const Box<double> first_image = pose_.to_second().hull(entry.first_box);
-    const double first_end = nearest_.direction().end_of_first(entry.first_box);
-    return intersect_children(
-        second_children_,
-        [&](const Box<typename B::Scalar>& box) {
-          double key = nearest_.direction().squared_distance(
-              first_end, nearest_.direction().end_of_second(box));
-          if (!(key < nearest_.enough())) return key;
-          key = std::max(key, metric_.in_second().squared_distance(first_image, box));
-          if (!(key < nearest_.enough())) return key;
-          return std::max(
-              key, metric_.in_first().squared_distance(entry.first_box, pose_.hull_in_first(box)));
-        },
-        [&](std::uint32_t i) {
-          return Entry{entry.first_box,  second_children_.box(i),
-                       entry.first,      second_children_.ref[i],
-                       entry.first_leaf, second_children_.is_leaf(i)};
-        });
+    // The node holds nothing but its children.
+    Box<double> all = empty_box<double>();
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      side.extents[i] = extent_of(s, children.ref[i], children.is_leaf(i), children.box(i));
+      expand(all, side.extents[i]);
+    }
+    nearest_.known(s).keep(entry.ref[s], false, all);
+    return queue_children(entry, s, key, extent_of(entry, 1 - s),
+                          other.to_other.hull(entry.box[1 - s]));
   }
 
-  template <class Children, class Key, class Make>
-  Errc intersect_children(const Children& children, Key key_of, Make make) noexcept {
+  // Puts child i in the place of its parent.
+  void descend(Entry& entry, std::size_t s, std::uint32_t i) const noexcept {
+    const ErasedCodec::Children& children = sides_[s].children;
+    entry.box[s] = children.box(i);
+    entry.ref[s] = children.ref[i];
+    entry.is_leaf[s] = children.is_leaf(i);
+  }
+
+  // A child is no nearer than its parent, of which more may be known: it was compared along other
+  // axes, too. `other_extent` and `other_image` are of the other subtree, along the axes and in the
+  // space of the side that was expanded.
+  Errc queue_children(const Entry& entry, std::size_t s, double parent_key,
+                      const Box<double>& other_extent, const Box<double>& other_image) noexcept {
+    const Side& side = sides_[s];
+    const Side& other = sides_[1 - s];
+    const double enough = nearest_.enough();
     std::array<double, kWidth> key;
     std::array<std::uint32_t, kWidth> order;  // children that can matter, nearest first
     std::size_t passed = 0;
-    for (std::uint32_t i = 0; i < children.count; ++i) {
-      const double k = key_of(children.box(i));
-      if (!(k < nearest_.enough())) {
+    for (std::uint32_t i = 0; i < side.children.count; ++i) {
+      double k =
+          std::max(parent_key, nearest_.axes().squared_distance(side.extents[i], other_extent));
+      const Box<double> box = side.children.box(i);
+      if (k < enough) k = std::max(k, side.gaps.squared_distance(box, other_image));
+      if (k < enough) {
+        k = std::max(k, other.gaps.squared_distance(side.to_other.hull(box), entry.box[1 - s]));
+      }
+      if (!(k < enough)) {
         nearest_.leave(k);
         continue;
       }
@@ -187,38 +203,35 @@ class DistanceWalk {
     }
     const bool goes_down = passed > 0 && !nearest_.has_any();
     // Farthest first: of equal keys the one pushed last is taken first.
-    for (std::size_t n = passed; n-- > (goes_down ? 1u : 0u);) {
-      if (!frontier_.push(key[n], nearest_.enough(), make(order[n]))) return Errc::kDepthExceeded;
-    }
-    if (goes_down) {
-      next_ = make(order[0]);
-      next_key_ = key[0];
-      has_next_ = true;
+    Entry child = entry;
+    for (std::size_t n = passed; n-- > 0;) {
+      descend(child, s, order[n]);
+      if (n == 0 && goes_down) {
+        next_ = child;
+        next_key_ = key[0];
+        has_next_ = true;
+      } else if (!frontier_.push(key[n], enough, child)) {
+        return Errc::kDepthExceeded;
+      }
     }
     return Errc::kOk;
   }
 
-  template <class S>
-  [[nodiscard]] static Eigen::Vector3d center(const Box<S>& box) noexcept {
+  [[nodiscard]] static Eigen::Vector3d center(const Box<double>& box) noexcept {
     Eigen::Vector3d middle;
     for (std::size_t k = 0; k < 3; ++k) {
-      middle[static_cast<Eigen::Index>(k)] = 0.5 * double{box.low[k]} + 0.5 * double{box.high[k]};
+      middle[static_cast<Eigen::Index>(k)] = 0.5 * box.low[k] + 0.5 * box.high[k];
     }
     return middle;
   }
 
-  template <class S>
-  [[nodiscard]] static double extent(const Box<S>& box) noexcept {
+  [[nodiscard]] static double extent(const Box<double>& box) noexcept {
     double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += double{box.high[k]} - double{box.low[k]};
+    for (std::size_t k = 0; k < 3; ++k) sum += box.high[k] - box.low[k];
     return sum;
   }
 
-  const BoundTree& first_;
-  const BoundTree& second_;
-  const A first_codec_;
-  const B second_codec_;
-  const RelativePose& pose_;
+  std::array<Side, 2> sides_;
   const WorldMetric& metric_;
   const std::uint64_t node_budget_;
   PairBound bound_;
@@ -228,8 +241,6 @@ class DistanceWalk {
   bool has_next_ = false;
   double next_key_ = 0;
   Entry next_;
-  typename A::Children first_children_;
-  typename B::Children second_children_;
   Frontier<Entry, kQueue, kStack> frontier_;
 };
 

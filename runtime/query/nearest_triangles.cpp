@@ -63,27 +63,30 @@ void NearestTriangles::set_enough() noexcept {
 // Skips triangles whose bounds are as far as the best. The allowed error must not skip more here:
 // what is found in a leaf would depend on it, and a larger error could miss the pair that ends the
 // walk of a smaller one.
-Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
-  if (const Errc error = leaves_.read(first, second); error != Errc::kOk) return error;
-  const GapWeights& gaps = metric_.in_first();
-  set_ends();
-  if (const double key = direction_.squared_distance(first_most_, second_least_); !(key < best_)) {
-    leave(key);
+Errc NearestTriangles::compare(NodeRef first, NodeRef second, double key) noexcept {
+  leaves_key_ = key;
+  if (const Errc error = find_extent(0, first); error != Errc::kOk) return error;
+  if (const Errc error = find_extent(1, second); error != Errc::kOk) return error;
+  if (const double apart = axes_.squared_distance(extent_[0], extent_[1]); !(apart < best_)) {
+    leave_triangles(apart);
     return Errc::kOk;
   }
+  if (const Errc error = leaves_.read(first, second); error != Errc::kOk) return error;
+  for (const std::size_t tree : {0u, 1u}) set_extents(tree);
+  const GapWeights& gaps = metric_.in_first();
   for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
     const double to_leaf = gaps.squared_distance(leaves_.first_bounds[i], leaves_.all_moved_bounds);
     if (!(to_leaf < best_)) {
-      leave(to_leaf);
+      leave_triangles(to_leaf);
       continue;
     }
     const Triangle triangle = leaves_.first.triangle(i);
     for (std::uint32_t j = 0; j < leaves_.second.count; ++j) {
-      const double key =
-          std::max(direction_.squared_distance(first_end_[i], second_end_[j]),
+      const double apart =
+          std::max(axes_.squared_distance(extents_[0][i], extents_[1][j]),
                    gaps.squared_distance(leaves_.first_bounds[i], leaves_.moved_bounds[j]));
-      if (!(key < best_)) {
-        leave(key);
+      if (!(apart < best_)) {
+        leave_triangles(apart);
         continue;
       }
       compare(triangle, i, leaves_.moved[j], j);
@@ -92,15 +95,28 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
   return Errc::kOk;
 }
 
-// Sets where the triangles of the current leaves end along the direction.
-void NearestTriangles::set_ends() noexcept {
-  for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
-    first_end_[i] = direction_.end_of_first(leaves_.first.triangle(i));
-    first_most_ = i == 0 ? first_end_[i] : std::max(first_most_, first_end_[i]);
+// Sets the extent of a leaf along the axes. Most leaves have met others since these changed, and
+// are not read.
+Errc NearestTriangles::find_extent(std::size_t tree, NodeRef leaf) noexcept {
+  if (const Box<double>* known = known_[tree].find(leaf, true)) {
+    extent_[tree] = *known;
+    return Errc::kOk;
   }
-  for (std::uint32_t j = 0; j < leaves_.second.count; ++j) {
-    second_end_[j] = direction_.end_of_moved(leaves_.moved[j]);
-    second_least_ = j == 0 ? second_end_[j] : std::min(second_least_, second_end_[j]);
+  const Errc error = tree == 0 ? leaves_.read_first(leaf) : leaves_.read_second(leaf);
+  if (error != Errc::kOk) return error;
+  set_extents(tree);
+  known_[tree].keep(leaf, true, extent_[tree]);
+  return Errc::kOk;
+}
+
+// Sets the extents of the leaf that was read last.
+void NearestTriangles::set_extents(std::size_t tree) noexcept {
+  extent_[tree] = empty_box<double>();
+  const std::uint32_t count = tree == 0 ? leaves_.first.count : leaves_.second.count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    extents_[tree][i] =
+        axes_.extent_in_first(tree == 0 ? leaves_.first.triangle(i) : leaves_.moved[i]);
+    expand(extent_[tree], extents_[tree][i]);
   }
 }
 
@@ -126,6 +142,9 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
   found.lower = std::max(0.0, found.lower - error);
   found.upper += error;
   if (!(found.lower > 0) && triangles_intersect(p, q)) found.lower = found.upper = 0;
+  // What was known of the leaves can be more by some roundings: a search that goes on never tells
+  // less than one that ended before them.
+  found.lower = std::min(std::max(found.lower, root_below(leaves_key_)), found.upper);
   pair_.lower = std::min(pair_.lower, found.lower);
   if (++in_vain_ == kPatience) set_enough();
   if (!(found.upper < pair_.upper)) return;
@@ -140,7 +159,7 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
   pair_.second = found.second;
   set_enough();
   face(between_);
-  set_ends();
+  for (const std::size_t tree : {0u, 1u}) set_extents(tree);
 }
 
 // Whether two triangles are as far as the best along the line between the nearest points so far.
@@ -154,7 +173,7 @@ bool NearestTriangles::is_apart(const Triangle& p, const Triangle& q, double siz
   if (!(lower > 0)) return false;
   // A comparison could not narrow the bounds below this fraction of their size.
   if (key < best_ && lower < best_to_improve(kRounding * size)) return false;
-  leave(key);
+  leave_triangles(key);
   return true;
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -12,9 +14,12 @@
 
 #include "format/children.h"
 #include "format/limits.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/approximation.h"
+#include "runtime/query/known_extents.h"
 #include "runtime/query/leaf_reading.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/query/scaled_length.h"
 #include "runtime/query/world_metric.h"
 #include "runtime/tree/bound_tree.h"
 
@@ -29,6 +34,13 @@ struct NearestPair {
   Eigen::Vector3d first;
   Eigen::Vector3d second;
 };
+
+/// A lower bound of the distance whose squared lower bound is `key`. The root of a rounded square
+/// may be too large by a factor of 1 + u, that of one that underflows by less than
+/// kLengthUnderflow.
+[[nodiscard]] inline double root_below(double key) noexcept {
+  return std::max(0.0, std::sqrt(key) * (1 - 2 * kRoundoffF64) - kLengthUnderflow);
+}
 
 /// Compares the triangles of leaves and keeps the distance from which pairs can be skipped.
 /// Everything passed by reference must outlive it.
@@ -46,13 +58,20 @@ class NearestTriangles {
     set_enough();
   }
 
-  /// The triangles of two leaves. Errors: those of corrupt leaves.
-  [[nodiscard]] Errc compare(NodeRef first, NodeRef second) noexcept;
+  /// The triangles of two leaves, whose squared distance is at least `key`. Errors: those of
+  /// corrupt leaves.
+  [[nodiscard]] Errc compare(NodeRef first, NodeRef second, double key) noexcept;
 
-  /// From now on boxes are also compared along this world vector.
-  void face(const Eigen::Vector3d& along) noexcept { direction_ = metric_.direction(along, pose_); }
-  /// Between the nearest points so far; at first the vector passed to face().
-  [[nodiscard]] const Direction& direction() const noexcept { return direction_; }
+  /// From now on boxes are also compared along this world vector and across it.
+  void face(const Eigen::Vector3d& along) noexcept {
+    axes_ = metric_.axes_along(along, pose_);
+    for (KnownExtents& known : known_) known.forget();
+  }
+  /// Along the line between the nearest points so far; at first the vector passed to face().
+  [[nodiscard]] const AlignedAxes& axes() const noexcept { return axes_; }
+  /// What is known of extents along them, of the first tree, 0, or the second, 1. compare() adds
+  /// those of leaves.
+  [[nodiscard]] KnownExtents& known(std::size_t tree) noexcept { return known_[tree]; }
 
   /// The squared distance from which pairs can be skipped: they could improve the answer by no more
   /// than the allowed error or rounding, or are beyond the maximal distance.
@@ -68,19 +87,24 @@ class NearestTriangles {
   [[nodiscard]] const NearestPair& pair() const noexcept { return pair_; }
 
  private:
+  // Triangles are no nearer than their leaves, of which more may be known than now tells them
+  // apart.
+  void leave_triangles(double key) noexcept { leave(std::max(key, leaves_key_)); }
   void compare(const Triangle& p, std::uint32_t i, const Triangle& q, std::uint32_t j) noexcept;
   [[nodiscard]] bool is_apart(const Triangle& p, const Triangle& q, double size,
                               double error) noexcept;
   // The distance from which a pair cannot improve the answer by more than `rounding`.
   [[nodiscard]] double best_to_improve(double rounding) const noexcept;
   void set_enough() noexcept;
-  void set_ends() noexcept;
+  Errc find_extent(std::size_t tree, NodeRef leaf) noexcept;
+  void set_extents(std::size_t tree) noexcept;
 
   const BoundTree& first_;
   const BoundTree& second_;
   const RelativePose& pose_;
   const WorldMetric& metric_;
   const Approximation& approximation_;
+  double leaves_key_ = 0;  // of the pair of leaves that is compared
   double enough_ = 0;
   double best_ = 0;  // enough_ for an allowed error of 0
   double left_ = std::numeric_limits<double>::infinity();
@@ -88,12 +112,12 @@ class NearestTriangles {
   double rounding_ = 0;                                // of the best distance
   std::uint64_t in_vain_ = 0;                          // triangles compared since it was found
   Eigen::Vector3d between_ = Eigen::Vector3d::Zero();  // separates its triangles; world
-  Direction direction_;
+  AlignedAxes axes_;
   LeafReading leaves_;
-  std::array<double, kMaxLeafTriangles> first_end_;
-  std::array<double, kMaxLeafTriangles> second_end_;
-  double first_most_ = 0;    // of the first leaf's ends
-  double second_least_ = 0;  // of the second's
+  // Along the axes: of the triangles of the leaves that were read last, and of the leaves compared.
+  std::array<std::array<Box<double>, kMaxLeafTriangles>, 2> extents_;
+  std::array<Box<double>, 2> extent_;
+  std::array<KnownExtents, 2> known_;
 };
 
 }  // namespace boxtree

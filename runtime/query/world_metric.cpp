@@ -22,6 +22,8 @@ constexpr double kMore = 1 + 32 * kRoundoffF64;
 constexpr double kLess = 1 - 32 * kRoundoffF64;
 // A computed inverse with a larger residual is unusable.
 constexpr double kTooSingular = 0.25;
+// Numbers of shorter rows may have lost digits to underflow, which no residual tells.
+constexpr double kLeastLength = 0x1p-960;
 
 // The largest sum of the magnitudes in a row.
 double largest_row_sum(const Eigen::Matrix3d& matrix) noexcept {
@@ -41,12 +43,18 @@ double largest_stretch(const Eigen::Matrix3d& rows) noexcept {
   return std::sqrt(std::sqrt(std::sqrt(largest_sum))) * (1 + 256 * kRoundoffF64);
 }
 
-// Rows scaled to length 1, and the lengths.
+// Rows scaled to length 1, and the lengths. Squares are taken of rows that a power of two has
+// brought to size 1: those of an inverse may be as small as another pose is large.
 struct UnitRows {
   explicit UnitRows(const Eigen::Matrix3d& matrix) : rows(matrix) {
     for (Eigen::Index k = 0; k < 3; ++k) {
-      length[k] = std::sqrt(squared_length(matrix.row(k).transpose()));
-      rows.row(k) /= length[k];
+      Eigen::Vector3d row = matrix.row(k).transpose();
+      const double size = largest_magnitude(row);
+      const int exponent = size > 0 && std::isfinite(size) ? std::ilogb(size) : 0;
+      for (Eigen::Index j = 0; j < 3; ++j) row[j] = std::ldexp(row[j], -exponent);
+      const double scaled_length = std::sqrt(squared_length(row));
+      length[k] = std::ldexp(scaled_length, exponent);
+      rows.row(k) = (row / scaled_length).transpose();
     }
   }
   Eigen::Matrix3d rows;
@@ -64,7 +72,7 @@ double relative_residual(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y,
   double largest = 0;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double relative = dot(residual.row(k).transpose(), bound) / y_length[k] * kMore;
-    if (!(relative <= largest)) largest = relative;  // NaN is kept
+    if (relative > largest || std::isnan(relative)) largest = relative;  // NaN stays
   }
   return largest;
 }
@@ -79,10 +87,12 @@ GapWeights weights_of(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y, const 
   const double residual = relative_residual(a, y, unit.length, g, bound);
   if (!(residual < kTooSingular)) return result;  // weights of zero: gaps give no bound
   for (std::size_t k = 0; k < 3; ++k) {
-    result.weight[k] = kLess / (unit.length[static_cast<Eigen::Index>(k)] * (1 + residual));
-    if (!std::isfinite(result.weight[k])) return GapWeights();
+    const double length = unit.length[static_cast<Eigen::Index>(k)];
+    result.weight[k] = kLess / (length * (1 + residual));
+    if (!(length > kLeastLength) || !std::isfinite(result.weight[k])) return GapWeights();
   }
   const double stretch = largest_stretch(unit.rows) + 2 * residual;
+  if (!std::isfinite(stretch)) return GapWeights();
   result.combined = stretch > 1 ? 1 / (stretch * stretch) * kLess : kLess;
   if (!(result.combined > 0)) result.combined = 0;
   return result;
@@ -150,31 +160,54 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
   return metric;
 }
 
-// Any vector n of the first space is valid: n . z = n . (Y v + (I - Y G) z) is at most |Y^T n| |v|
-// plus the part of the residual r, r times the sum of |n_k| |z_k| / |v|. With n near G^T v that is
-// the length of v along v.
+// The axes U of the world give coordinates of z by the rows n of N = U G: lengths in the world,
+// since N G^-1 is U but for rounding, which weights_of() measures.
 //
 // n . (y - x) for x in a box of the first tree and y = fl(L w + t), w in a box of the second, is
 // computed as (n . t + (L^T n) . w) - n . x. Magnitudes are at most |n| . place, and no term passes
 // through more than 4 roundings in y, 4 in L^T n, 4 in its product with w and 3 in the differences;
 // boxes may extend beyond the root's by one rounding.
-Direction WorldMetric::direction(const Eigen::Vector3d& along,
-                                 const RelativePose& pose) const noexcept {
-  Direction result;
+AlignedAxes WorldMetric::axes_along(const Eigen::Vector3d& along,
+                                    const RelativePose& pose) const noexcept {
+  AlignedAxes result;
   const double size = along.cwiseAbs().maxCoeff();
   if (!(size > 0) || !std::isfinite(size)) return result;
-  const Eigen::Vector3d n = product(linear_.transpose(), along / size);
-  const double length = (std::sqrt(squared_length(product(inverse_.transpose(), n))) +
-                         residual_ * dot(n.cwiseAbs(), coordinate_)) *
-                        kMore;
-  const double scale = kLess / length;
-  if (!std::isfinite(scale)) return result;
-  result.first_ = n;
-  result.second_ = -product(pose.to_first().linear.transpose(), n);
-  result.offset_ = dot(n, pose.to_first().translation);
-  result.error_ = 32 * kRoundoffF64 * dot(n.cwiseAbs(), place_);
-  result.scale_ = scale;
+  const Eigen::Vector3d to = along / size;
+  // The axis that is farthest from it makes the largest cross product, at least sqrt(2/3) of it.
+  Eigen::Vector3d beside = Eigen::Vector3d::Zero();
+  Eigen::Index least = 0;
+  for (Eigen::Index k = 1; k < 3; ++k) {
+    if (std::abs(to[k]) < std::abs(to[least])) least = k;
+  }
+  beside[least] = 1;
+  const Eigen::Vector3d across = cross(to, beside);
+  const Eigen::Vector3d first = to / std::sqrt(squared_length(to));
+  const Eigen::Vector3d second = across / std::sqrt(squared_length(across));
+  Eigen::Matrix3d axes;
+  axes.row(0) = first.transpose();
+  axes.row(1) = second.transpose();
+  axes.row(2) = cross(first, second).transpose();
+  const Eigen::Matrix3d n = matrix_product(axes, linear_);
+  result.weights_ = weights_of(n, matrix_product(n, inverse_), linear_, coordinate_);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    result.weights_.margin[k] = 32 * kRoundoffF64 * dot(n.row(row).transpose().cwiseAbs(), place_);
+  }
+  result.map_[0].linear = n;
+  result.map_[1].linear = matrix_product(n, pose.to_first().linear);
+  result.map_[1].translation = product(n, pose.to_first().translation);
   return result;
+}
+
+Box<double> AlignedAxes::extent_of(std::size_t tree, const Box<double>& box) const noexcept {
+  return map_[tree].hull(box);
+}
+Box<double> AlignedAxes::extent_in_first(const Triangle& triangle) const noexcept {
+  return bounds_of(map_[0].apply(triangle));
+}
+double AlignedAxes::squared_distance(const Box<double>& first,
+                                     const Box<double>& second) const noexcept {
+  return weights_.squared_distance(first, second);
 }
 
 double WorldMetric::length_below(double length) const noexcept {

@@ -52,57 +52,31 @@ struct GapWeights {
   }
 };
 
-/// A world direction along which boxes of both trees are compared. Unlike a comparison on the axes,
-/// it loses nothing because the second tree's boxes are rotated: along the line between two points
-/// that are close to each other, what is near them has its true distance.
-class Direction {
+/// Three axes of the world at right angles, the first of them given, along which boxes of both
+/// trees are compared. Unlike a comparison on the axes of one tree, it loses nothing because the
+/// other's boxes are rotated: along the line between two points that are close to each other, what
+/// is near them has its true distance, and what else lies in their planes is apart on the other
+/// two.
+class AlignedAxes {
  public:
-  /// No direction: no boxes are apart along it.
-  Direction() = default;
+  /// No axes: no boxes are apart along them.
+  AlignedAxes() = default;
 
-  /// The end of a box of the first tree, on the side of the second.
-  template <class S>
-  [[nodiscard]] double end_of_first(const Box<S>& box) const noexcept {
-    return (end(box, first_, 0) + end(box, first_, 1)) + end(box, first_, 2);
-  }
-  [[nodiscard]] double end_of_first(const Triangle& triangle) const noexcept {
-    return std::max({dot(first_, triangle.corner[0]), dot(first_, triangle.corner[1]),
-                     dot(first_, triangle.corner[2])});
-  }
-  /// The end of a box of the second tree, given in its own space, on the side of the first.
-  template <class S>
-  [[nodiscard]] double end_of_second(const Box<S>& box) const noexcept {
-    return offset_ - ((end(box, second_, 0) + end(box, second_, 1)) + end(box, second_, 2));
-  }
-  /// The same end of a triangle that has been moved into the first tree's space.
-  [[nodiscard]] double end_of_moved(const Triangle& triangle) const noexcept {
-    return std::min({dot(first_, triangle.corner[0]), dot(first_, triangle.corner[1]),
-                     dot(first_, triangle.corner[2])});
-  }
-  /// A lower bound of the squared distance between the objects with these ends.
-  [[nodiscard]] double squared_distance(double first_end, double second_end) const noexcept {
-    const double gap = std::max(0.0, ((second_end - first_end) - error_) * scale_);
-    return gap * gap;
-  }
+  /// The extent along the axes of a box of the first tree, 0, or the second, 1, in its own space.
+  [[nodiscard]] Box<double> extent_of(std::size_t tree, const Box<double>& box) const noexcept;
+  /// Of a triangle of the first tree, or of the second that has been moved into the first's space.
+  [[nodiscard]] Box<double> extent_in_first(const Triangle& triangle) const noexcept;
+  /// A lower bound of the squared distance between objects with these extents.
+  [[nodiscard]] double squared_distance(const Box<double>& first,
+                                        const Box<double>& second) const noexcept;
 
  private:
   friend class WorldMetric;
 
-  template <class S>
-  [[nodiscard]] static double end(const Box<S>& box, const Eigen::Vector3d& normal,
-                                  std::size_t k) noexcept {
-    const double n = normal[static_cast<Eigen::Index>(k)];
-    return n * (n > 0 ? double{box.high[k]} : double{box.low[k]});
-  }
-  [[nodiscard]] static double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
-    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-  }
-
-  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();   // the direction, in the first space
-  Eigen::Vector3d second_ = Eigen::Vector3d::Zero();  // its opposite, in the second
-  double offset_ = 0;
-  double scale_ = 0;  // world length of a unit
-  double error_ = 0;  // of two ends
+  // From the tree's spaces.
+  std::array<AffineMap, 2> map_{{{Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()},
+                                 {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()}}};
+  GapWeights weights_;
 };
 
 /// The world in which two trees are placed, in units of a power of two in which G is of size 1.
@@ -118,9 +92,10 @@ class WorldMetric {
   /// The same in the second tree's space: of RelativePose::to_second().hull() and its own boxes.
   [[nodiscard]] const GapWeights& in_second() const noexcept { return in_second_; }
 
-  /// The direction of a vector in the world. `pose` is that of make().
-  [[nodiscard]] Direction direction(const Eigen::Vector3d& along,
-                                    const RelativePose& pose) const noexcept;
+  /// Axes of which the first is along a vector of the world, none if that has no direction. `pose`
+  /// is that of make().
+  [[nodiscard]] AlignedAxes axes_along(const Eigen::Vector3d& along,
+                                       const RelativePose& pose) const noexcept;
 
   /// An upper bound of the distance of any two points of two boxes in the first tree's space.
   template <class S, class T>

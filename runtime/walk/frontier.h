@@ -48,22 +48,44 @@ class Frontier {
 
   /// Takes the next entry whose key is below `enough`; false if there is none.
   [[nodiscard]] bool pop(double enough, double& key, Entry& entry) noexcept {
+    return pop(enough, key, entry, [](const Entry&) { return 0.0; });
+  }
+
+  /// The same where keys may have grown since entries were pushed: `key_now` computes that of an
+  /// entry. Each turn of the loop below gives an entry its key of now, so there are no more turns
+  /// than entries.
+  template <class KeyNow>
+  [[nodiscard]] bool pop(double enough, double& key, Entry& entry, KeyNow key_now) noexcept {
     while (stacked_ > 0) {
       const Stacked& top = stack_[--stacked_];
-      if (!(top.key < enough)) {
-        least_left_ = std::min(least_left_, top.key);
+      const double now = std::max(top.key, key_now(top.entry));
+      if (!(now < enough)) {
+        least_left_ = std::min(least_left_, now);
         continue;
       }
-      key = top.key;
+      key = now;
       entry = top.entry;
       return true;
     }
-    if (queued_ == 0 || !(handles_.front().key < enough)) return false;
-    key = handles_.front().key;
-    entry = entries_[handles_.front().place];
-    std::pop_heap(handles_.begin(), end());
-    --queued_;
-    return true;
+    while (queued_ > 0 && handles_.front().key < enough) {
+      const double now = key_now(entries_[handles_.front().place]);
+      std::pop_heap(handles_.begin(), end());
+      Handle& handle = handles_[queued_ - 1];
+      if (!(now > handle.key)) {
+        key = handle.key;
+        entry = entries_[handle.place];
+        --queued_;
+        return true;
+      }
+      if (now < enough) {
+        handle.key = now;
+        std::push_heap(handles_.begin(), end());
+      } else {
+        least_left_ = std::min(least_left_, now);
+        --queued_;
+      }
+    }
+    return false;
   }
 
   /// The least key of all that was pushed and not taken; infinity if there is none.

@@ -420,6 +420,111 @@ TEST(Distance, RefusesWhatHasNoMeaning) {
   EXPECT_EQ(distance(cube.tree, Pose::Identity(), cube.tree, flat).code(), Errc::kInvalidPose);
 }
 
+SourceMesh square(float size) {
+  SourceMesh mesh;
+  mesh.positions.f32 = {0, 0, 0, size, 0, 0, size, size, 0, 0, size, 0};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}, {{0, 2, 3, cooker::kNoCorner}}};
+  return mesh;
+}
+
+// Found by an oracle: squares of axes that another pose had made tiny lost digits, and a lower
+// bound was a fifth too large.
+TEST(Distance, IsTrueWhereAFlatBodyIsScaledBeyondWhatSquaresHold) {
+  SourceMesh peak;
+  peak.positions.f32 = {3, 3, 2, 4, 3, 3, 3, 4, 3};
+  peak.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  const test::CookedTree first = test::cook_tree(peak, CodecId::kWide8);
+  const test::CookedTree second = test::cook_tree(square(7), CodecId::kWide8);
+  int answered = 0;
+  for (int exponent = 500; exponent < 600; ++exponent) {
+    for (const double mantissa : {1.0, 1.285150280408541}) {
+      SCOPED_TRACE(exponent);
+      Pose high = Pose::Identity();
+      high.linear()(2, 2) = std::ldexp(mantissa, exponent);
+      for (const std::uint64_t budget : {std::uint64_t{0}, kUnlimitedNodes}) {
+        DistanceOptions options;
+        options.node_budget = budget;
+        const auto found = distance(first.tree, Pose::Identity(), second.tree, high, options);
+        if (!found.ok()) continue;  // beyond what a pose may be
+        ++answered;
+        EXPECT_LE(found->lower, 2.0);
+        EXPECT_GE(found->upper, 2.0);
+        if (budget > 0) EXPECT_NEAR(found->upper, 2.0, 1e-12);
+      }
+    }
+  }
+  EXPECT_GT(answered, 200);
+}
+
+// Likewise: a residual that was no number was forgotten, and three gaps at sharp angles counted as
+// if they were at right ones.
+TEST(Distance, IsTrueWhereAnInverseOverflows) {
+  const test::CookedTree first = test::cook_tree(test::sphere(6, 8), CodecId::kWide8);
+  const test::CookedTree second = test::cook_tree(square(7), CodecId::kWide8);
+  Pose flat = Pose::Identity();
+  flat.linear()(1, 1) = 0.1;
+  flat.translation().x() = 20;
+  Pose sheared = Pose::Identity();
+  Eigen::Matrix3d to;
+  to << 0, 1, 0, 1, 0, 0, 1, 0, 1;
+  sheared.linear() = to.inverse();
+  sheared.linear().col(0) *= std::pow(10.0, -308.75);
+  const Truth truth = brute_force(first.tree, flat, second.tree, sheared);
+  for (const std::uint64_t budget : {std::uint64_t{0}, kUnlimitedNodes}) {
+    DistanceOptions options;
+    options.node_budget = budget;
+    const auto found = distance(first.tree, flat, second.tree, sheared, options);
+    ASSERT_TRUE(found.ok());
+    check_bounds(*found, truth);
+  }
+}
+
+// Likewise: the square of a gap that underflows may be rounded up.
+TEST(Distance, IsTrueWhereItsSquareUnderflows) {
+  const test::CookedTree plate = test::cook_tree(square(7), CodecId::kWide8);
+  for (const double scale : {1.0, 1e-3}) {
+    for (int exponent = -1000; exponent < -400; ++exponent) {
+      Pose below = Pose::Identity(), above = Pose::Identity();
+      below.linear() *= scale;
+      above.linear() *= scale;
+      above.translation().z() = std::ldexp(1.2, exponent);
+      for (const std::uint64_t budget : {std::uint64_t{0}, kUnlimitedNodes}) {
+        DistanceOptions options;
+        options.node_budget = budget;
+        const auto found = distance(plate.tree, below, plate.tree, above, options);
+        ASSERT_TRUE(found.ok());
+        EXPECT_LE(found->lower, above.translation().z()) << exponent;
+        EXPECT_GE(found->upper, above.translation().z()) << exponent;
+      }
+    }
+  }
+}
+
+// Likewise: where very many triangles are equally near, a search that went on knew less by a
+// rounding than one that had ended.
+TEST(Distance, OfABodyThatIsAPointNeverKnowsLessByGoingOn) {
+  const test::CookedTree first = test::cook_tree(test::sphere(8, 10), CodecId::kPlainF32);
+  Random random;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const test::CookedTree second = test::cook_tree(test::soup(300, seed), CodecId::kWide8);
+    const Pose pose = random.pose(3, 20);
+    Pose point = Pose::Identity();
+    point.linear() *= 1e-100;
+    point.translation() = random.vector(100);
+    double gap = std::numeric_limits<double>::infinity();
+    for (std::uint64_t budget = 0; budget < 400; ++budget) {
+      DistanceOptions options;
+      options.node_budget = budget;
+      const auto found = distance(first.tree, pose, second.tree, point, options);
+      ASSERT_TRUE(found.ok());
+      ASSERT_LE(found->upper - found->lower, gap) << budget;
+      gap = found->upper - found->lower;
+      if (found->converged) break;
+    }
+  }
+}
+
 // Trees of nodes and of one leaf are of one codec by name and of two by what is bound.
 TEST(Distance, OfATreeOfOneLeafAndOneOfNodes) {
   const test::CookedTree leaf = test::cook_tree(test::duplicates(1), CodecId::kWide8);
