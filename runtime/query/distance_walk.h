@@ -151,13 +151,15 @@ class DistanceWalk {
     ErasedCodec::Children& children = side.children;
     const Errc error = bound_.count(side.codec.expand(entry.ref[s], entry.box[s], children));
     if (error != Errc::kOk) return error;
-    // The node holds nothing but its children.
-    Box<double> all = empty_box<double>();
-    for (std::uint32_t i = 0; i < children.count; ++i) {
-      side.extents[i] = extent_of(s, children.ref[i], children.is_leaf(i), children.box(i));
-      expand(all, side.extents[i]);
+    // Before anything is found no axes are worth it. The node holds nothing but its children.
+    if (nearest_.has_any()) {
+      Box<double> all = empty_box<double>();
+      for (std::uint32_t i = 0; i < children.count; ++i) {
+        side.extents[i] = extent_of(s, children.ref[i], children.is_leaf(i), children.box(i));
+        expand(all, side.extents[i]);
+      }
+      nearest_.known(s).keep(entry.ref[s], false, all);
     }
-    nearest_.known(s).keep(entry.ref[s], false, all);
     return queue_children(entry, s, key, extent_of(entry, 1 - s),
                           other.to_other.hull(entry.box[1 - s]));
   }
@@ -182,8 +184,9 @@ class DistanceWalk {
     std::array<std::uint32_t, kWidth> order;  // children that can matter, nearest first
     std::size_t passed = 0;
     for (std::uint32_t i = 0; i < side.children.count; ++i) {
-      double k =
-          std::max(parent_key, nearest_.axes().squared_distance(side.extents[i], other_extent));
+      double k = parent_key;
+      if (nearest_.has_any())
+        k = std::max(k, nearest_.axes().squared_distance(side.extents[i], other_extent));
       const Box<double> box = side.children.box(i);
       if (k < enough) k = std::max(k, side.gaps.squared_distance(box, other_image));
       if (k < enough) {

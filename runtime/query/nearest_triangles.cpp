@@ -92,6 +92,8 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second, double key) noexce
       compare(triangle, i, leaves_.moved[j], j);
     }
   }
+  if (has_nearer_) face(between_);
+  has_nearer_ = false;
   return Errc::kOk;
 }
 
@@ -158,8 +160,7 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
   pair_.first = found.first;
   pair_.second = found.second;
   set_enough();
-  face(between_);
-  for (const std::size_t tree : {0u, 1u}) set_extents(tree);
+  has_nearer_ = true;
 }
 
 // Whether two triangles are as far as the best along the line between the nearest points so far.

@@ -497,7 +497,9 @@ TEST_P(CastCases, AHullWhoseFaceIsNearlyParallelToAnEdge) {
 TEST_P(CastCases, HullsOfFewCoordinatesAreNotLate) {
   std::mt19937 random(5);
   const auto number = [&](int most, float unit) {
-    return static_cast<float>(static_cast<int>(random() % (2 * most + 1)) - most) * unit;
+    return static_cast<float>(static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) -
+                              most) *
+           unit;
   };
   const auto point = [&](int most, float unit) {
     const double x = number(most, unit), y = number(most, unit);
@@ -511,7 +513,7 @@ TEST_P(CastCases, HullsOfFewCoordinatesAreNotLate) {
   const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
   int hits = 0;
   for (int i = 0; i < 2000; ++i) {
-    std::vector<Eigen::Vector3d> points(4 + i % 6);
+    std::vector<Eigen::Vector3d> points(static_cast<std::size_t>(4 + i % 6));
     for (Eigen::Vector3d& p : points) p = point(3, 0.23f);
     const Motion motion{point(9, 1)};
     if (motion.direction.isZero(0)) continue;

@@ -35,7 +35,7 @@ TEST(KnownExtents, AreThoseThatWereKeptOrUnknown) {
           EXPECT_EQ(*extent, extent_of(i, is_leaf, turn));
         }
       }
-      EXPECT_GT(found, 400u);
+      EXPECT_GT(found, 200u);
       known->forget();
       for (std::uint32_t i = 0; i < kMany; ++i) {
         for (const bool is_leaf : {false, true}) {
