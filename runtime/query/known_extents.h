@@ -20,11 +20,14 @@ class KnownExtents {
  public:
   /// The extent of a node or leaf, null if it is not known.
   [[nodiscard]] const Box<double>* find(NodeRef ref, bool is_leaf) const noexcept {
-    const Entry& entry = entries_[place_of(ref, is_leaf)];
-    return entry.tag == tag_of(is_leaf) && entry.ref == ref ? &entry.extent : nullptr;
+    const std::size_t place = place_of(ref, is_leaf);
+    const Entry& entry = entries_[place];
+    return tags_[place] == tag_of(is_leaf) && entry.ref == ref ? &entry.extent : nullptr;
   }
   void keep(NodeRef ref, bool is_leaf, const Box<double>& extent) noexcept {
-    entries_[place_of(ref, is_leaf)] = {ref, tag_of(is_leaf), extent};
+    const std::size_t place = place_of(ref, is_leaf);
+    tags_[place] = tag_of(is_leaf);
+    entries_[place] = {ref, extent};
   }
   /// The axes have changed. They do so when a nearer pair is found, far less than 2^63 times.
   void forget() noexcept { axes_ += 2; }
@@ -32,7 +35,6 @@ class KnownExtents {
  private:
   struct Entry {
     NodeRef ref;
-    std::uint64_t tag = 0;  // of no axes
     Box<double> extent;
   };
 
@@ -51,6 +53,8 @@ class KnownExtents {
   }
 
   std::uint64_t axes_ = 2;
+  // Apart from the entries, which need no first values: a search of a few pairs pays for these.
+  std::array<std::uint64_t, kPlaces> tags_{};  // 0: of no axes
   std::array<Entry, kPlaces> entries_;
 };
 
