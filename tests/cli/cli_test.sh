@@ -1351,7 +1351,7 @@ grep -q 'Positions are f64' far.html
 { cat cube.obj; printf 'v nan 0 0\nf 1 2 -1\n'; } >cube_and_bad.obj
 expect 3 "$boxtree" report cube_and_bad.obj --quick --no-times
 grep -q '(report --skip-bad drops such faces)$' err
-expect 0 "$boxtree" report cube_and_bad.obj -o bad.html --quick --no-times --skip-bad --json
+expect 0 "$boxtree" report cube_and_bad.obj -o bad.html --quick --no-times --skip-bad --json -q
 same "$(cat err)" 'boxtree: warning: cube_and_bad.obj: 1 bad face left out by --skip-bad'
 same "$(jq -c '.meshes[0] | [.triangles, .skipped]' out)" '[12,1]'
 grep -q 'Without 1 bad face of the source' bad.html
