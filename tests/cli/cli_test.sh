@@ -1343,7 +1343,7 @@ done
 grep -q 'surface within the tolerance of 0.3' out
 expect 5 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.001
 same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.222, farther than the tolerance of 0.001; --f64 keeps all digits'
-expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.001 --f64
+expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.001 --f64 -q
 same "$(cat err)" ''
 grep -q 'Positions are f64' far.html
 
