@@ -76,8 +76,7 @@ struct Summary {
   std::vector<CookedTree> trees;  // in file order; without the bytes of nodes and geometry
   std::vector<ImportReport> imports;
   std::vector<std::filesystem::path> files_read;
-  std::string
-      costs_disturbance;  // of times that costs of a file come from; empty if there was none
+  std::string costs_warning;  // of the constants of a file, as disturbed_constants(); or empty
   std::uint64_t file_bytes = 0;
   std::optional<SceneSummary> scene;  // empty without a top level
   std::vector<WhyLine> why;           // the bytes of kept parts add up to the size of the file

@@ -108,6 +108,14 @@ std::string costs_to_json(const Calibration& calibration) {
       .dump(2);
 }
 
+std::string disturbed_constants(const Calibration& calibration) {
+  const std::string why = calibration.timed_work.disturbance();
+  if (why.empty()) return {};
+  return why +
+         ", so constants may be wrong, and what is chosen by them: measure again when the "
+         "machine, and its host, do nothing else";
+}
+
 Result<Calibration> parse_costs(std::string_view text) {
   const ParsedJson parsed = parse_json(text);
   if (parsed.fault != ParsedJson::Fault::kNone)

@@ -15,6 +15,9 @@ namespace boxtree::cooker {
 
 [[nodiscard]] std::string costs_to_json(const Calibration& calibration);
 
+/// What to tell of constants that were measured while other programs ran; empty if none did.
+[[nodiscard]] std::string disturbed_constants(const Calibration& calibration);
+
 /// The constants in a JSON text. Every codec needs exactly one row for each of exact and grid, and
 /// every kind of query three steps that are finite, not negative and not all zero, because a
 /// missing step would count as free; how they were measured may be missing. Error: kDocumentInvalid

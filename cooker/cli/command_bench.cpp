@@ -203,11 +203,8 @@ int run_calibration(const BenchArguments& arguments) {
   }
   const Result<Calibration> calibration = calibrate(meshes, arguments.runs);
   if (!calibration) return fail(calibration.error());
-  if (const std::string why = calibration->timed_work.disturbance(); !why.empty()) {
-    warn(why +
-         ", so constants may be wrong, and what is chosen by them: measure again when the "
-         "machine, and its host, do nothing else");
-  }
+  if (const std::string warning = disturbed_constants(*calibration); !warning.empty())
+    warn(warning);
   if (arguments.json) {
     print(parse_json(costs_to_json(*calibration)).value);
     return 0;

@@ -514,11 +514,7 @@ std::vector<std::string> warnings_of(const Summary& summary) {
       if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(warning);
     }
   };
-  if (!summary.costs_disturbance.empty()) {
-    add({"--costs: " + summary.costs_disturbance +
-         ", so constants may be wrong, and what is chosen by them: measure again when the machine, "
-         "and its host, do nothing else"});
-  }
+  if (!summary.costs_warning.empty()) add({"--costs: " + summary.costs_warning});
   for (const ImportReport& import : summary.imports) add(warnings_of(import));
   if (summary.scene) add(summary.scene->notices);
   add(hiding_names(summary.trees));

@@ -62,7 +62,7 @@ class Job {
       Result<Calibration> calibration = read_costs(job_.costs);
       if (!calibration) return calibration.error();
       options_.costs = std::move(calibration->costs);
-      disturbance_ = calibration->timed_work.disturbance();
+      costs_warning_ = disturbed_constants(*calibration);
     }
     if (!job_.profile.empty()) {
       Result<Profile> profile = read_profile(job_.profile);
@@ -105,7 +105,7 @@ class Job {
                                 import.files_read.end());
     }
     if (!job_.costs.empty()) summary.files_read.push_back(job_.costs);
-    summary.costs_disturbance = std::move(disturbance_);
+    summary.costs_warning = std::move(costs_warning_);
     if (Status status = check_outputs(output_files(job_), summary.files_read); !status)
       return status.error();
     // Written first, so that an error in it leaves no new output without a depfile.
@@ -168,7 +168,7 @@ class Job {
   const CookJob& job_;
   CookOptions options_;
   Profile profile_;
-  std::string disturbance_;           // of the times that job_.costs come from
+  std::string costs_warning_;
   bool is_mesh_replaceable_ = false;  // the one at the place of the reordered mesh
   const Progress& progress_;
 };
