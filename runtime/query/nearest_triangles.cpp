@@ -74,6 +74,7 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second, double key) noexce
   if (const Errc error = leaves_.read(first, second); error != Errc::kOk) return error;
   for (const std::size_t tree : {0u, 1u}) set_extents(tree);
   const GapWeights& gaps = metric_.in_first();
+  const double upper_before = pair_.upper;
   for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
     const double to_leaf = gaps.squared_distance(leaves_.first_bounds[i], leaves_.all_moved_bounds);
     if (!(to_leaf < best_)) {
@@ -92,8 +93,7 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second, double key) noexce
       compare(triangle, i, leaves_.moved[j], j);
     }
   }
-  if (has_nearer_) face(between_);
-  has_nearer_ = false;
+  if (pair_.upper < upper_before) face(between_);
   return Errc::kOk;
 }
 
@@ -160,7 +160,6 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
   pair_.first = found.first;
   pair_.second = found.second;
   set_enough();
-  has_nearer_ = true;
 }
 
 // Whether two triangles are as far as the best along the line between the nearest points so far.

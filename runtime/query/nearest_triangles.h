@@ -110,7 +110,6 @@ class NearestTriangles {
   double left_ = std::numeric_limits<double>::infinity();
   NearestPair pair_;
   double rounding_ = 0;                                // of the best distance
-  bool has_nearer_ = false;                            // since the axes were chosen
   std::uint64_t in_vain_ = 0;                          // triangles compared since it was found
   Eigen::Vector3d between_ = Eigen::Vector3d::Zero();  // separates its triangles; world
   AlignedAxes axes_;

@@ -126,7 +126,6 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
   const Eigen::Vector3d length = UnitRows(inverse).length;
   const double residual = relative_residual(identity, inverse, length, g, length);
   metric.inverse_ = inverse;
-  metric.residual_ = residual;
   metric.coordinate_.setConstant(std::numeric_limits<double>::infinity());
   if (residual < kTooSingular) {
     const Eigen::Vector3d bound = length / (1 - residual) * kMore;

@@ -137,7 +137,6 @@ class WorldMetric {
   GapWeights in_second_;
   Eigen::Matrix3d inverse_;         // of G, nearly
   Eigen::Vector3d coordinate_;      // |z_k| / |G z| is at most this; infinite if nothing is known
-  double residual_ = 0;             // of the inverse, in units of its rows
   Eigen::Vector3d place_;           // largest magnitudes in the first space, of both trees together
   std::array<double, 3> column_{};  // lengths of the columns of G
   double stretch_ = 0;              // of G with columns of length 1, at least
