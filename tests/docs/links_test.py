@@ -18,12 +18,17 @@ def without_code(text):
     return re.sub(r"`[^`\n]*`", "", text)
 
 
+def anchor_of(heading):
+    """The anchor of a heading that no other has, as GitHub makes it."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
 def anchors(page):
-    """The anchors of a page's headings, as GitHub makes them."""
+    """The anchors of a page's headings."""
     text = re.sub(r"^```.*?^```$", "", page.read_text(), flags=re.M | re.S)
     found = []
     for heading in re.findall(r"^#{1,6} +(.+?) *$", text, flags=re.M):
-        name = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+        name = anchor_of(heading)
         found.append(f"{name}-{found.count(name)}" if name in found else name)
     return found
 
@@ -49,8 +54,7 @@ guide = source / "docs" / "GUIDE.md"
 listed = re.findall(r"\]\(#([^)]+)\)", re.search(r"^Sections: .*?\n\n", guide.read_text(), re.M | re.S)[0])
 sections = re.findall(r"^## +(.+?) *$", without_code(guide.read_text()), re.M)
 for section in sections:
-    anchor = re.sub(r"[^\w\- ]", "", section.lower()).replace(" ", "-")
-    if anchor not in listed:
+    if anchor_of(section) not in listed:
         failures.append(f"docs/GUIDE.md: the section '{section}' is not in the list at its top")
 
 for failure in failures:
