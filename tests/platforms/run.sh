@@ -226,6 +226,10 @@ built_for_windows() {
     -DCMAKE_CXX_COMPILER=x86_64-w64-mingw32-g++-posix -DCMAKE_RC_COMPILER=x86_64-w64-mingw32-windres \
     -DBOXTREE_BUILD_COOKER=ON -DBOXTREE_BUILD_SAMPLES=OFF >"$log" 2>&1 &&
     cmake --build "$work/windows" --target "$@" >>"$log" 2>&1; then
+    # One server for all programs: that of Debian's Wine ends with each of them, and resets the connection of
+    # the next one if that comes just then. It fails where one runs already.
+    mkdir -p "$WINEPREFIX"
+    wineserver -p60 </dev/null >/dev/null 2>&1 || true
     return 0
   fi
   grep -E 'error|Error' "$log" | head -5
