@@ -62,6 +62,21 @@ Pose random_pose(std::mt19937_64& random, double spread, bool unevenly) {
   return pose;
 }
 
+std::vector<Pose> extreme_poses() {
+  std::mt19937_64 random(9);
+  std::vector<Pose> poses;
+  for (const double scale : {1e-30, 1e-3, 1.0, 1e20}) {
+    for (const double flat : {1e-15, 1e-7, 1.0, 1e7}) {
+      for (const double far : {0.0, 1e3, 1e9}) {
+        Pose& pose = poses.emplace_back(random_pose(random, 0, true));
+        pose.linear() = scale * (pose.linear() * Eigen::Vector3d(1, flat, 1).asDiagonal());
+        pose.translation() = Eigen::Vector3d(far, -far, far / 2) * scale;
+      }
+    }
+  }
+  return poses;
+}
+
 cooker::SceneParts random_parts(std::uint32_t count, std::uint32_t trees, std::uint32_t moving,
                                 std::uint32_t layers, unsigned seed) {
   std::mt19937_64 random(seed);

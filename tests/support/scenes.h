@@ -34,6 +34,10 @@ struct CookedScene {
 /// `unevenly` also a separate scale per axis, a mirror and a shear.
 [[nodiscard]] Pose random_pose(std::mt19937_64& random, double spread, bool unevenly);
 
+/// Poses that leave nothing of a tree's space to rely on: all but flat, far away, tiny in a huge
+/// world, huge in a tiny one.
+[[nodiscard]] std::vector<Pose> extreme_poses();
+
 /// `count` instances of trees 0 to `trees` - 1 in `layers` layers that all collide; every
 /// `moving`-th instance moves.
 [[nodiscard]] cooker::SceneParts random_parts(std::uint32_t count, std::uint32_t trees,

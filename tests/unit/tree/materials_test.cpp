@@ -22,6 +22,7 @@
 #include "tests/support/require.h"
 #include "tests/support/source_faces.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/tree/face_number_cases.h"
 #include "tests/unit/tree/section_bytes.h"
 
 namespace boxtree {
@@ -61,13 +62,7 @@ void expect_materials(const SourceMesh& mesh, const FaceMaterials& materials, co
   });
 }
 
-struct Case {
-  CodecId codec;
-  GeometryId geometry;
-  bool face_ids;
-};
-
-class MaterialsOf : public testing::TestWithParam<Case> {};
+class MaterialsOf : public testing::TestWithParam<test::FaceNumberCase> {};
 
 TEST_P(MaterialsOf, EachFaceAreThoseOfTheSource) {
   const auto& [codec, geometry, face_ids] = GetParam();
@@ -95,22 +90,8 @@ TEST_P(MaterialsOf, EachFaceAreThoseOfTheSource) {
   }
 }
 
-std::vector<Case> cases() {
-  std::vector<Case> all;
-  for (const CodecId codec : test::all_codecs()) {
-    for (const bool face_ids : {true, false}) all.push_back({codec, GeometryId::kExact, face_ids});
-    all.push_back({codec, GeometryId::kExternal, false});
-  }
-  all.push_back({CodecId::kWide8, GeometryId::kArrays, false});
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Cases, MaterialsOf, testing::ValuesIn(cases()),
-                         [](const testing::TestParamInfo<Case>& each) {
-                           return test::test_name({each.param.codec, each.index}) + "_" +
-                                  std::string(geometry_name(each.param.geometry)) +
-                                  (each.param.face_ids ? "_ids" : "_no_ids");
-                         });
+INSTANTIATE_TEST_SUITE_P(Cases, MaterialsOf, testing::ValuesIn(test::face_number_cases()),
+                         test::name_of_case);
 
 TEST(TreeMaterials, CopiesHaveTheirOwn) {
   SourceMesh mesh = test::terrain(4, 3);

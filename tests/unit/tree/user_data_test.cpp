@@ -20,6 +20,7 @@
 #include "tests/support/require.h"
 #include "tests/support/source_faces.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/tree/face_number_cases.h"
 #include "tests/unit/tree/section_bytes.h"
 
 namespace boxtree {
@@ -52,13 +53,7 @@ std::vector<FaceRun> runs_of(const Numbers& numbers) {
   return runs;
 }
 
-struct DataCase {
-  CodecId codec;
-  GeometryId geometry;
-  bool face_ids;
-};
-
-class UserDataOf : public testing::TestWithParam<DataCase> {};
+class UserDataOf : public testing::TestWithParam<test::FaceNumberCase> {};
 
 TEST_P(UserDataOf, EachFaceIsThatOfTheSource) {
   const auto& [codec, geometry, face_ids] = GetParam();
@@ -96,22 +91,8 @@ TEST_P(UserDataOf, EachFaceIsThatOfTheSource) {
   }
 }
 
-std::vector<DataCase> data_cases() {
-  std::vector<DataCase> all;
-  for (const CodecId codec : test::all_codecs()) {
-    for (const bool face_ids : {true, false}) all.push_back({codec, GeometryId::kExact, face_ids});
-    all.push_back({codec, GeometryId::kExternal, false});
-  }
-  all.push_back({CodecId::kWide8, GeometryId::kArrays, false});
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Cases, UserDataOf, testing::ValuesIn(data_cases()),
-                         [](const testing::TestParamInfo<DataCase>& each) {
-                           return test::test_name({each.param.codec, each.index}) + "_" +
-                                  std::string(geometry_name(each.param.geometry)) +
-                                  (each.param.face_ids ? "_ids" : "_no_ids");
-                         });
+INSTANTIATE_TEST_SUITE_P(Cases, UserDataOf, testing::ValuesIn(test::face_number_cases()),
+                         test::name_of_case);
 
 TEST(UserData, OfOneNumberIsOneRunThatNeedsNoIds) {
   cooker::CookOptions options;
