@@ -21,7 +21,7 @@ namespace boxtree {
 namespace {
 
 Errc search(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
-  if constexpr (kHasWideCodecs && kWalksByVectors) {
+  if constexpr (kWalksTreesByVectors) {
     if (has_wide_nodes(tree)) return walk_wide(tree, query, budget);
   }
   return search_best_first(tree, query, budget);

@@ -19,7 +19,7 @@ namespace {
 
 Result<Visit> walk_wide_nodes(const BoundTree& first, const BoundTree& second,
                               const RelativePose& pose, PairVisitor visitor, PairBound& bound) {
-  if constexpr (kHasWideCodecs && kWalksByVectors) {
+  if constexpr (kWalksTreesByVectors) {
     return walk_wide_pairs(first, second, pose, visitor, bound);
   } else {
     return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {

@@ -29,6 +29,8 @@ inline constexpr bool kHasWideCodecs = BOXTREE_HAS_WIDE8 || BOXTREE_HAS_WIDE4;
 
 /// Whether the wide codecs have walks by vectors; otherwise they use the generic ones.
 inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
+/// The same for trees of the wide codecs, where the build has them.
+inline constexpr bool kWalksTreesByVectors = kHasWideCodecs && kWalksByVectors;
 
 /// What a walk needs: decodes one node after the other. Whatever the bytes, it reads nothing
 /// outside of the nodes that it was made for.

@@ -64,7 +64,7 @@ template <class Batch>
 void answer_batch(Batch& batch, const QueryLimits& limits) {
   // A packet reads nodes for several queries: what one of them may read cannot be told.
   const bool is_limited = limits.nodes != QueryLimits().nodes;
-  if constexpr (kHasWideCodecs && kWalksByVectors) {
+  if constexpr (kWalksTreesByVectors) {
     if (!is_limited && has_wide_nodes(batch.tree) && batch.tree.has_float_nodes()) {
       const DefaultFloatState state;
       return walk_wide(batch);

@@ -6,7 +6,7 @@
 namespace boxtree {
 
 Errc read_leaf(const BoundTree& tree, NodeRef leaf, TriangleBatch& out) noexcept {
-  if constexpr (kHasWideCodecs && kWalksByVectors) {
+  if constexpr (kWalksTreesByVectors) {
     const LeafReader& reader = tree.leaves();
     const bool is_full = leaf.second == kLeafFaces && leaf.first % kLeafFaces == 0;
     if (is_full && reader.has_clusters() && reader.floats().is_direct &&

@@ -53,7 +53,7 @@ Answer with_wide_codec([[maybe_unused]] const BoundTree& tree,
 /// The walk of a query over a tree of any codec. `plain`: the walk of traversal.h for one codec.
 template <class Query, class Plain>
 Errc walk_tree(const BoundTree& tree, Query& query, const Plain& plain) {
-  if constexpr (kHasWideCodecs && kWalksByVectors) {
+  if constexpr (kWalksTreesByVectors) {
     if (has_wide_nodes(tree)) return walk_wide(tree, query);
   }
   if constexpr (kHasCodecWalks<Query> && !kHasOtherCodecs && !kWalksByVectors) {
