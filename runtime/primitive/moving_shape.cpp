@@ -342,18 +342,29 @@ double certain_by(const MovingShape& moving, const Triangle& triangle, double s,
   const double doubt = moving.doubt, radius = moving.shape.radius;
   // A distance tells no more how deep a hull is, nor a core that has next to nothing around it.
   const bool is_core = moving.shape.hull != nullptr || radius <= 8 * doubt;
+  const double way = longest_length(moving.direction);
   double by = s, step = 0;
+  double passed = kInfinity;  // a step after which it is apart again
   for (int n = 0; n < kMostSteps; ++n) {
     const double missing = at.upper + doubt - radius;
     // Rounding tilts the line between points that are near each other, but no normal.
     const bool is_last = is_core && at.length <= radius + 8 * doubt;
     const double speed =
         is_last ? -dot(normal, moving.direction) : dot(at.between, moving.direction);
-    if (!(missing > 0) || !(speed > 0)) break;
-    step = is_last ? step + (at.length + 2 * doubt) / speed
-                   : std::max(2 * step, 2 * missing * at.length / speed);
-    at = nearness(moving, placed(moving, triangle, s + step));
-    if (is_last && at.lower > radius + 6 * doubt) break;  // it has passed a corner
+    // What rounding alone makes of a shape that slides along the triangle.
+    const double tilt = is_last ? 0 : (at.upper - at.length + doubt) * way;
+    if (!(missing > 0) || !(speed > tilt)) break;
+    double next = is_last ? step + (at.length + 2 * doubt) / speed
+                          : std::max(2 * step, 2 * missing * at.length / speed);
+    if (!(next < passed)) next = step + (passed - step) / 2;
+    const Nearness there = nearness(moving, placed(moving, triangle, s + next));
+    if (there.lower > radius + 6 * doubt) {  // it has passed the triangle, or a corner
+      if (is_last) break;
+      passed = next;
+      continue;
+    }
+    at = there;
+    step = next;
     by = s + step;
     if (is_last) break;
   }

@@ -583,6 +583,55 @@ TEST(CastAtTinyFaces, TouchesAllOfThem) {
   }
 }
 
+// What slides along the plane of a face, in touch to within rounding, comes no nearer: it is told
+// where it begins to touch, not where rounding would have it touch by, behind the face.
+TEST(CastAlongAFace, IsNotLate) {
+  std::mt19937_64 random(12);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  int hits = 0;
+  for (int i = 0; i < 500; ++i) {
+    SCOPED_TRACE(i);
+    const double at = 4 * unit();
+    SourceMesh mesh;
+    mesh.positions.precision = cooker::Precision::kF64;
+    for (int corner = 0; corner < 3; ++corner) {
+      mesh.positions.f64.insert(mesh.positions.f64.end(), {at, 3 * unit(), 3 * unit()});
+    }
+    mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+    const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide8);
+    const double radius = std::exp2(2 * unit());
+    const Eigen::Vector3d from(at - radius, 3 * unit(), 3 * unit());
+    const Motion motion{{0, unit(), unit()}, 1e12};
+    const Eigen::Vector3d half(0, unit(), unit());
+    const auto check = [&](const CastResult& hit, const auto& overlap_at) {
+      ASSERT_TRUE(hit.ok());
+      if (!hit) return;
+      ++hits;
+      ASSERT_LE(hit->t_lower, hit->t);
+      bool touches = false;
+      ASSERT_TRUE(
+          overlap_at(from + hit->t * motion.direction, radius + 0x1p-42, [&](const FaceRef&) {
+            touches = true;
+            return false;
+          }).ok());
+      EXPECT_TRUE(touches) << hit->t_lower << " " << hit->t;
+      if (!hit->initially_touching)
+        EXPECT_LT((hit->t - hit->t_lower) * motion.direction.norm(), 1e-3);
+    };
+    check(cast_closest(cooked.tree, Sphere{from, radius}, motion),
+          [&](const Eigen::Vector3d& center, double reach, const auto& visit) {
+            return overlap_sphere(cooked.tree, center, reach, visit);
+          });
+    check(
+        cast_closest(cooked.tree, Capsule{from - half, from + half, radius}, motion),
+        [&](const Eigen::Vector3d& center, double reach, const auto& visit) {
+          return overlap_capsule(cooked.tree, Capsule{center - half, center + half, reach}, visit);
+        });
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(hits, 200);
+}
+
 TEST(CastIntoAVertex, TouchesItFirst) {
   SourceMesh mesh;
   mesh.name = "pyramid";
