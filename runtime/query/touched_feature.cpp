@@ -24,11 +24,25 @@ TrianglePart part_of_face(const CastCandidate& found, TrianglePart part) noexcep
 
 namespace {
 
-// The active edges of a triangle of the face that was found; both are in tree space.
+// Of a triangle of a face, in tree space, those of `edges` that are active. A quad's diagonal never
+// is, though its ends may be those of an edge of another face, which is found by them.
+std::uint32_t active_of(const BoundTree& tree, std::uint32_t face, const Triangle& triangle,
+                        std::uint32_t half, std::uint32_t edges) noexcept {
+  const std::uint32_t active = active_edges_of(tree.active_edges(), face, triangle) & edges;
+  const std::uint32_t diagonal = half == 0 ? 4 : 1;
+  if ((active & diagonal) == 0 || !tree.active_edges()) return active;
+  if (half == 0) {
+    TriangleBatch halves;
+    if (tree.leaves().read(face, 1, halves) != Errc::kOk || halves.count < 2) return active;
+  }
+  return active & ~diagonal;
+}
+
+// The same of the face that was found, where it was.
 std::uint32_t active_of(const BoundTree& tree, const CastCandidate& found, const Triangle& triangle,
-                        std::uint32_t half) noexcept {
-  return active_edges_of(tree.active_edges(), found.original, triangle) &
-         ~found.inactive.of_triangle(found.original, half);
+                        std::uint32_t half, std::uint32_t edges) noexcept {
+  return active_of(tree, found.original, triangle, half,
+                   edges & ~found.inactive.of_triangle(found.original, half));
 }
 
 // The edges of a triangle that end at corner `i`.
@@ -41,9 +55,10 @@ std::uint32_t edges_at(std::uint32_t i) noexcept {
 bool is_active(const BoundTree& tree, const CastCandidate& found,
                const TrianglePart& part) noexcept {
   if (part.feature == Feature::kFace || !tree.active_edges()) return true;
-  const std::uint32_t active = active_of(tree, found, found.in_tree, found.half);
-  if (part.feature == Feature::kEdge) return (active & 1u << part.index) != 0;
-  if ((active & edges_at(part.index)) != 0) return true;
+  const bool is_edge = part.feature == Feature::kEdge;
+  const std::uint32_t edges = is_edge ? 1u << part.index : edges_at(part.index);
+  if (active_of(tree, found, found.in_tree, found.half, edges) != 0) return true;
+  if (is_edge) return false;
   // Where both triangles of a quad meet, one edge at the vertex is of the other one.
   TriangleBatch face;
   if (tree.leaves().read(found.original, 1, face) != Errc::kOk || face.count < 2) return false;
@@ -51,7 +66,7 @@ bool is_active(const BoundTree& tree, const CastCandidate& found,
   const Triangle other = face.triangle(other_half);
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (other.corner[i] != found.in_tree.corner[part.index]) continue;
-    if ((active_of(tree, found, other, other_half) & edges_at(i)) != 0) return true;
+    if (active_of(tree, found, other, other_half, edges_at(i)) != 0) return true;
   }
   return false;
 }
@@ -75,7 +90,7 @@ Result<std::uint32_t> active_edges(const Tree& queried, const FaceRef& face, std
   const BoundTree& tree = BoundTree::of(queried);
   const Result<Triangle> triangle = tree.triangle(face, half);
   if (!triangle) return triangle.error();
-  return active_edges_of(tree.active_edges(), face.index, *triangle);
+  return active_of(tree, face.index, *triangle, half, kAllEdges);
 }
 
 Eigen::Vector3d resolved_normal(const CastHit& hit, const Eigen::Vector3d& velocity) {

@@ -570,7 +570,7 @@ class Tree:
                     found.append(7)
                 else:
                     found.append(sum(bit(t[i], t[(i + 1) % 3], t[(i + 2) % 3]) << i for i in range(3)) if code else 0)
-            faces.append(found)
+            faces.append(found if len(found) == 1 else [found[0] & 3, found[1] & 6])  # no diagonal of a quad
         expect(used == (starts > 0), "bits are there for leaves that have them")
         return faces
 

@@ -56,7 +56,7 @@ void expect_edges_of_brute_force(const SourceMesh& mesh, const Tree& tree) {
       const Triangle triangle = require(tree.triangle(ref, half));
       const std::uint32_t found = require(active_edges(tree, ref, half));
       if (is_degenerate(triangle)) {
-        EXPECT_EQ(found, 7u);
+        EXPECT_EQ(found, expected_edges(is_quad ? 0xfu : 7u, is_quad, half));
       } else {
         EXPECT_EQ(found, expected_edges(active[ref.id], is_quad, half)) << mesh.name << ref.id;
       }
@@ -219,6 +219,29 @@ TEST(ActiveEdges, ACornerOfAQuadIsActiveByEitherOfItsTriangles) {
     };
     ASSERT_TRUE(collide(cooked.tree, Sphere{center, 0.5}, look).ok());
     EXPECT_GE(vertices, 2);
+  }
+}
+
+// A wall on the diagonal of a floor's quad: its edge there is found by the same ends, and active.
+TEST(ActiveEdges, TheDiagonalOfAQuadIsNotEvenWhereAnotherFaceHasAnActiveEdge) {
+  SourceMesh mesh;
+  mesh.name = "wall";
+  mesh.positions.f32 = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1};
+  mesh.faces = {{{0, 1, 2, 3}}, {{0, 2, 4, cooker::kNoCorner}}};
+  for (const test::Encoding& encoding : test::all_encodings()) {
+    SCOPED_TRACE(codec_name(encoding.codec));
+    const test::CookedTree cooked =
+        test::cook_tree(mesh, encoding.codec, with_active_edges(encoding.geometry));
+    expect_edges_of_brute_force(mesh, cooked.tree);
+    int on_diagonal = 0, on_wall = 0;
+    ASSERT_TRUE(collide(cooked.tree, Sphere{{0.5, 0.5, -0.05}, 0.1}, [&](const Contact& contact) {
+                  EXPECT_EQ(contact.feature, Feature::kEdge);
+                  EXPECT_EQ(contact.is_active, contact.face.id == 1);
+                  (contact.face.id == 1 ? on_wall : on_diagonal) += 1;
+                  return true;
+                }).ok());
+    EXPECT_EQ(on_diagonal, 2);
+    EXPECT_EQ(on_wall, 1);
   }
 }
 
