@@ -23,12 +23,12 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   if (from > t_max) return;
   CastCandidate found;
   set_triangle(triangle, face_index, half, found);
-  if (!admits_side(found.triangle)) return;
+  if (!admits_side(found)) return;
   if (wanted == Wanted::kContacts) {
     const std::optional<Penetration> contact = moving.contact_at_rest(found.triangle);
     if (!contact) return;
     found.at = *contact;
-    found.face_normal = face_normal(found.triangle, contact->normal);
+    found.face_normal = face_normal(found, contact->normal);
   } else {
     const double scale = scale_of_parameters();
     const std::optional<double> s = moving.first_touch(found.triangle, from * scale, t_max * scale);
@@ -50,6 +50,7 @@ void CastQuery::set_triangle(const Triangle& triangle, std::uint32_t face_index,
     return;
   }
   found.triangle = placed->apply(triangle);
+  found.is_placed = true;
   found.is_mirror = placed->is_mirror;
   found.inactive = placed->inactive;
 }
@@ -73,9 +74,9 @@ void CastQuery::take(CastCandidate& found) noexcept {
   t_max = found.s / scale;
 }
 
-bool CastQuery::admits_side(const Triangle& triangle) const noexcept {
+bool CastQuery::admits_side(const CastCandidate& found) const noexcept {
   if (faces.options == nullptr || faces.options->back_faces == BackFaces::kHit) return true;
-  const bool is_back = dot(unit_normal(triangle), moving.direction) > 0;
+  const bool is_back = dot(front_normal(found), moving.direction) > 0;
   return is_back == (faces.options->back_faces == BackFaces::kOnly);
 }
 
@@ -108,7 +109,7 @@ CastHit hit_of(const BoundTree& tree, const MovingShape& moving, const CastCandi
   hit.triangle = found.half;
   hit.point = frame.to_object(contact.point);
   hit.normal = contact.normal;
-  hit.face_normal = face_normal(found.triangle, hit.normal);
+  hit.face_normal = face_normal(found, hit.normal);
   set_feature(tree, found, contact.feature, hit);
   return hit;
 }

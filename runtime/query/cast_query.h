@@ -40,6 +40,7 @@ struct CastCandidate {
   std::uint32_t half = 0;
   Triangle triangle;
   Triangle in_tree;             // the same in tree space
+  bool is_placed = false;       // whether a pose has made `triangle` of it
   bool is_mirror = false;       // whether its corners 1 and 2 have changed places there
   InactiveEdges inactive;       // of the instance, besides those of the tree
   Penetration at;               // of kContacts
@@ -150,7 +151,7 @@ struct CastQuery : RayInTree {
   }
 
   // Whether a triangle may be hit, from the side from which it is met.
-  [[nodiscard]] bool admits_side(const Triangle& triangle) const noexcept;
+  [[nodiscard]] bool admits_side(const CastCandidate& found) const noexcept;
 
   [[nodiscard]] static double near_of(const BoundTree& tree, const ConvexShape& shape) noexcept {
     return RaySlab::power_above(tree.largest_abs()) + 2 * largest_magnitude(shape.half_extents());

@@ -71,8 +71,15 @@ bool is_active(const BoundTree& tree, const CastCandidate& found,
   return false;
 }
 
-Eigen::Vector3d face_normal(const Triangle& triangle, const Eigen::Vector3d& normal) noexcept {
-  const Eigen::Vector3d front = unit_normal(triangle);
+Eigen::Vector3d front_normal(const CastCandidate& found) noexcept {
+  const Eigen::Vector3d front = unit_normal(found.triangle);
+  return found.is_placed && unit_normal(found.in_tree).isZero(0)
+             ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+             : front;
+}
+
+Eigen::Vector3d face_normal(const CastCandidate& found, const Eigen::Vector3d& normal) noexcept {
+  const Eigen::Vector3d front = front_normal(found);
   return dot(front, normal) < 0 ? Eigen::Vector3d(-front) : front;
 }
 

@@ -14,8 +14,11 @@ namespace boxtree {
 /// Whether a part of the face's triangle is active.
 [[nodiscard]] bool is_active(const BoundTree& tree, const CastCandidate& found,
                              const TrianglePart& part) noexcept;
-/// The normal of the face on the side of `normal`.
-[[nodiscard]] Eigen::Vector3d face_normal(const Triangle& triangle,
+/// The normal of the triangle that was found. Zero if it has no area in tree space: a pose may give
+/// it one, by rounding.
+[[nodiscard]] Eigen::Vector3d front_normal(const CastCandidate& found) noexcept;
+/// The same on the side of `normal`.
+[[nodiscard]] Eigen::Vector3d face_normal(const CastCandidate& found,
                                           const Eigen::Vector3d& normal) noexcept;
 [[nodiscard]] Eigen::Vector3d resolved(const Eigen::Vector3d& normal,
                                        const Eigen::Vector3d& of_face, bool keeps_its_own,

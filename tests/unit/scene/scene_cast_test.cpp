@@ -324,6 +324,40 @@ TEST(SceneCastFeatures, AreThoseOfTheFace) {
   EXPECT_GT(inactive, 100);
 }
 
+// A face without an area has no sides and no normal, though a pose may give it an area by rounding.
+TEST(SceneCastSides, AFaceWithoutAnAreaHasNone) {
+  cooker::SourceMesh mesh;
+  mesh.name = "line";
+  mesh.positions.f32 = {-1, -1, -1, 0, 1, 2, 2, 5, 8};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  std::mt19937_64 random(6);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  for (int i = 0; i < 40; ++i) {
+    cooker::SceneParts parts;
+    parts.instances.emplace_back().pose = test::random_pose(random, 3, true);
+    const CookedScene cooked = test::cook_scene({mesh}, parts);
+    const Scene scene = require(Scene::bind(cooked.file));
+    const Eigen::Vector3d way = Eigen::Vector3d(unit(), unit(), unit()).normalized();
+    const Eigen::Vector3d at = parts.instances[0].pose * Eigen::Vector3d(0, 1, 2);
+    const Sphere ball{at - 9 * way, 0.5};
+    SceneFaceOptions options;
+    options.back_faces = BackFaces::kIgnore;
+    const SceneCastResult hit = cast_closest(scene, ball, {way}, options);
+    ASSERT_TRUE(hit.has_value()) << i;
+    EXPECT_TRUE(hit->face_normal.isZero(0));
+    options.back_faces = BackFaces::kOnly;
+    const SceneCastResult back = cast_closest(scene, ball, {way}, options);
+    EXPECT_TRUE(back.ok() && !back.has_value()) << i;
+    int contacts = 0;
+    ASSERT_TRUE(collide(scene, Sphere{at, 0.5}, [&](const SceneContact& contact) {
+                  EXPECT_TRUE(contact.face_normal.isZero(0));
+                  ++contacts;
+                  return true;
+                }).ok());
+    EXPECT_EQ(contacts, 1);
+  }
+}
+
 TEST(SceneCastErrors, NameTheField) {
   const CookedScene cooked =
       test::cook_scene({test::sphere(6, 8)}, test::random_parts(4, 1, 0, 1, 1));
