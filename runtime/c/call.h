@@ -67,6 +67,9 @@ const char* first_null(const char* name, Pointer pointer, Rest... rest) noexcept
 /// Structs may grow by this in all later versions: a size beyond is taken for none that was set.
 inline constexpr std::uint32_t kMostGrowth = 1024;
 
+/// The largest bxt_error, with room for a longer message behind it.
+inline constexpr std::uint32_t kMostErrorSize = 65536;
+
 /// The size that a struct, which may be as short as an older version made it, says that it has.
 template <class T>
 std::uint32_t stated_size(const T* given) noexcept {

@@ -51,7 +51,7 @@ bxt_status fail(bxt_error* error, Errc code, std::string_view detail,
                 std::string_view more) noexcept {
   const auto status = static_cast<bxt_status>(code);
   if (error == nullptr || stated_size(error) < sizeof(bxt_error) ||
-      stated_size(error) > sizeof(bxt_error) + kMostGrowth) {
+      stated_size(error) > kMostErrorSize) {
     return status;
   }
   const ErrcInfo& info = error_info(code);

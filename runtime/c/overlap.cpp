@@ -78,8 +78,8 @@ bxt_status visit_in_boxes(const Handle* subject, const bxt_vec3* mins, const bxt
                           std::size_t count, bxt_batch_face_visitor visitor, void* context,
                           const bxt_limits* limits, bxt_status* statuses, bxt_error* error) {
   if (subject == nullptr) return refuse_null(error, "tree or scene");
-  if (count == 0) return BXT_OK;
-  if (const char* name = first_null("mins", mins, "maxs", maxs)) return refuse_null(error, name);
+  if (const char* name = count == 0 ? nullptr : first_null("mins", mins, "maxs", maxs))
+    return refuse_null(error, name);
   return visit_batch(
       subject, count, [&](std::size_t i) { return box_of(mins[i], maxs[i]); }, visitor, context,
       limits, statuses, error,
@@ -91,8 +91,7 @@ bxt_status visit_in_spheres(const Handle* subject, const bxt_vec3* centers, cons
                             std::size_t count, bxt_batch_face_visitor visitor, void* context,
                             const bxt_limits* limits, bxt_status* statuses, bxt_error* error) {
   if (subject == nullptr) return refuse_null(error, "tree or scene");
-  if (count == 0) return BXT_OK;
-  if (const char* name = first_null("centers", centers, "radii", radii))
+  if (const char* name = count == 0 ? nullptr : first_null("centers", centers, "radii", radii))
     return refuse_null(error, name);
   return visit_batch(
       subject, count,

@@ -144,24 +144,27 @@ TEST_F(CMessages, ThatAreLongAreCutAtAWholeCharacter) {
 TEST_F(CMessages, ContinueInALongerBuffer) {
   struct {
     bxt_error error = {};
-    char more[1000];
+    char more[65536 - sizeof(bxt_error)];
     char behind[8];
   } longer;
-  std::memset(longer.more, '#', sizeof longer.more);
-  std::memset(longer.behind, '#', sizeof longer.behind);
-  set_name(400, false);
-  longer.error.struct_size = offsetof(decltype(longer), behind);
-  EXPECT_EQ(find(&longer.error), BXT_TREE_INDEX);
-  const auto* const message = reinterpret_cast<const char*>(&longer) + offsetof(bxt_error, message);
-  EXPECT_EQ(std::string(message), expected());
-  EXPECT_EQ(longer.error.message_length, expected().size());
-  EXPECT_EQ(std::string(longer.behind, 8), "########");
+  for (const std::size_t size :
+       {std::size_t{1512}, std::size_t{1537}, std::size_t{4096}, std::size_t{65536}}) {
+    SCOPED_TRACE(size);
+    std::memset(longer.more, '#', sizeof longer.more + sizeof longer.behind);
+    set_name((std::min<std::size_t>(size, 4096) - 1000) / 2, false);
+    longer.error.struct_size = static_cast<std::uint32_t>(size);
+    EXPECT_EQ(find(&longer.error), BXT_TREE_INDEX);
+    const auto* const all = reinterpret_cast<const char*>(&longer);
+    EXPECT_EQ(std::string(all + offsetof(bxt_error, message)), expected());
+    EXPECT_EQ(longer.error.message_length, expected().size());
+    EXPECT_EQ(std::string(all + size, 8), "########");
+  }
 }
 
 TEST_F(CMessages, OfAnErrorWithoutASizeAreNotWritten) {
   set_name(3, false);
   for (const std::uint32_t size :
-       {0u, 4u, static_cast<std::uint32_t>(sizeof(bxt_error)) - 1, 0xffffffffu}) {
+       {0u, 4u, static_cast<std::uint32_t>(sizeof(bxt_error)) - 1, 65537u, 0xffffffffu}) {
     bxt_error error = {};
     error.struct_size = size;
     error.status = -1;

@@ -64,6 +64,25 @@ Answer visited_c(bool all, const Query& query) {
   });
 }
 
+TEST(COverlaps, OfNothingWantAVisitor) {
+  test::for_each_subject([](const auto&, const auto* c_subject) {
+    using Functions = OverlapsOf<decltype(c_subject)>;
+    const auto visitor = [](void*, std::size_t, const bxt_face*) { return true; };
+    EXPECT_EQ(Functions::boxes(c_subject, nullptr, nullptr, 0, visitor, nullptr, nullptr, nullptr,
+                               nullptr),
+              BXT_OK);
+    EXPECT_EQ(Functions::boxes(c_subject, nullptr, nullptr, 0, nullptr, nullptr, nullptr, nullptr,
+                               nullptr),
+              BXT_INVALID_QUERY);
+    EXPECT_EQ(Functions::spheres(c_subject, nullptr, nullptr, 0, visitor, nullptr, nullptr, nullptr,
+                                 nullptr),
+              BXT_OK);
+    EXPECT_EQ(Functions::spheres(c_subject, nullptr, nullptr, 0, nullptr, nullptr, nullptr, nullptr,
+                                 nullptr),
+              BXT_INVALID_QUERY);
+  });
+}
+
 TEST(COverlaps, OfBoxesAreThoseOfCpp) {
   test::for_each_subject([](const auto& subject, const auto* c_subject) {
     using Functions = OverlapsOf<decltype(c_subject)>;
