@@ -17,17 +17,17 @@ sets=sse4
 if grep -qsw avx2 /proc/cpuinfo; then sets=avx2; fi
 cmake -S . -B build/quickstart -G Ninja -DCMAKE_BUILD_TYPE=Release -DBOXTREE_BUILD_TESTS=OFF \
   -DBOXTREE_INSTRUCTION_SETS=$sets -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 >/dev/null
-# Ninja counts in one line of a terminal; elsewhere every tenth step is a line. (mawk would keep them until it has 4 KB.)
-every_tenth() {
+# Ninja counts in one line of a terminal; elsewhere every third step is a line. (mawk would keep them until it has 4 KB.)
+every_third() {
   local line step=0
   while IFS= read -r line; do
-    if [[ $line != \[* ]] || ((step++ % 10 == 0)); then printf '%s\n' "$line"; fi
+    if [[ $line != \[* ]] || ((step++ % 3 == 0)); then printf '%s\n' "$line"; fi
   done
 }
 if [ -t 1 ]; then
   NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart -j"$(nproc)" boxtree_cli
 else
-  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart -j"$(nproc)" boxtree_cli | every_tenth
+  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart -j"$(nproc)" boxtree_cli | every_third
 fi
 boxtree=build/quickstart/boxtree
 out=build/quickstart/cooked

@@ -10,6 +10,10 @@
 #include "samples/bullet_drop/mapped_shape.h"
 
 int main(int argc, char** argv) {
+  if (argc > 2 || (argc == 2 && argv[1][0] == '-')) {
+    std::fputs("usage: bullet_drop [LEVEL.bxt]\n", stderr);
+    return 2;
+  }
   const char* const path = argc > 1 ? argv[1] : "level.bxt";
   bullet_drop::Level level = bullet_drop::make_level();
   if (const auto written = bullet_drop::cook_level(level, path); !written) {

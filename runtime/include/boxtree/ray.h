@@ -71,8 +71,8 @@ BOXTREE_API RayResult any_hit(const Tree& tree, const Ray& ray, const FaceOption
 /// number to stop. Of `t_max` every hit is visited, of each hit's own t what comes before it.
 using RayVisitor = FunctionRef<double(const RayHit&)>;
 
-/// Visits every hit, in no promised order: each triangle once, copies of a face, too. A ray through
-/// an edge or a corner hits each triangle there. Errors as for closest_hit(). Never allocates.
+/// Visits every hit, in no promised order: each triangle once, copies of a face, too; of a ray
+/// through an edge, one of its triangles or both. Errors as for closest_hit(). Never allocates.
 BOXTREE_API Result<Visit> all_hits(const Tree& tree, const Ray& ray, RayVisitor visitor,
                                    const FaceOptions& options = {});
 
