@@ -29,7 +29,6 @@ struct TriangleEdges {
 struct Leaf {
   std::array<TriangleEdges, 2 * kLeafFaces> triangle;
   std::uint32_t count = 0;
-  bool has_diagonal = false;
 
   [[nodiscard]] LeafEdges code() const {
     const auto all_are = [&](std::uint32_t edges) {
