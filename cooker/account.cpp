@@ -98,6 +98,23 @@ class Account {
     return of_file;
   }
 
+  [[nodiscard]] bool is_wanted_exact(std::size_t mesh) const {
+    return mesh < cooked_.plan.meshes.size() && cooked_.plan.meshes[mesh].exact;
+  }
+
+  // Of a budget that excluded some encoding of a tree; 0 if none did.
+  [[nodiscard]] std::uint32_t line_of_budget(std::size_t tree) const {
+    const SceneBudget& budget = cooked_.profile.budget;
+    for (const Candidate& candidate : cooked_.contests[tree].candidates) {
+      if (candidate.rejected == kOverTime && budget.slowdown) return budget.slowdown->line;
+      if (candidate.rejected == kOverBytes && budget.bytes_per_triangle) {
+        return budget.bytes_per_triangle->line;
+      }
+      if (candidate.rejected == kOverFileBytes && budget.bytes) return budget.bytes->line;
+    }
+    return 0;
+  }
+
   void add_section(const SectionEntry& entry) {
     WhyLine line;
     line.part = section_name(entry.kind);
@@ -112,9 +129,19 @@ class Account {
       const std::string decided = reason_of_option(*aspect, entry);
       if (!decided.empty()) line.reason += line.reason.empty() ? decided : "; " + decided;
     }
+    const bool is_encoding = aspect == Aspect::kCodec || aspect == Aspect::kPrecision;
+    // No precision was wanted: the goal has chosen the grid.
+    if (decision != nullptr && decision->line == 0 && is_encoding && !is_wanted_exact(*mesh)) {
+      decision = decision_on(Aspect::kCodec, mesh);
+    }
     if (decision != nullptr) {
       line.reason += line.reason.empty() ? decision->reason : "; " + decision->reason;
       line.line = cited(decision->line);
+      const std::uint32_t budget = is_encoding ? line_of_budget(entry.owner) : 0;
+      if (decision->line == 0 && budget != 0) {
+        line.reason += ", within the budget";
+        line.line = cited(budget);
+      }
     }
     const bool are_edges =
         entry.kind == SectionKind::kActiveEdges || entry.kind == SectionKind::kInstanceEdges;
@@ -140,8 +167,10 @@ class Account {
         return fmt::format("codec {}", codec_name(cooked_.trees[entry.owner].nodes.codec));
       case SectionKind::kVertices:
       case SectionKind::kCorners:
-        if (cooked_.trees[entry.owner].geometry.geometry == GeometryId::kGrid) {
-          aspect = Aspect::kPrecision;
+        aspect = Aspect::kPrecision;
+        if (cooked_.trees[entry.owner].geometry.geometry != GeometryId::kGrid &&
+            !is_wanted_exact(cooked_.mesh_of_tree[entry.owner])) {
+          aspect = Aspect::kCodec;
         }
         return geometry_reason(entry.kind, cooked_.trees[entry.owner]);
       case SectionKind::kFaceIds:

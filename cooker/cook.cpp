@@ -292,17 +292,27 @@ class Cook {
         continue;
       }
       const auto chosen = choose(std::span(&contests_[t], 1), wishes_[t]);
-      if (!chosen) return in_mesh(mesh_of_tree_[t], chosen.error());
+      if (!chosen) return in_budget(in_mesh(mesh_of_tree_[t], chosen.error()));
       chosen_[t] = chosen->front();
     }
     if (sharing.empty()) return {};
     const auto chosen = choose_each(contests, wishes);
-    if (!chosen) return chosen.error();
+    if (!chosen) return in_budget(chosen.error());
     for (std::size_t i = 0; i < sharing.size(); ++i) {
       chosen_[sharing[i]] = (*chosen)[i];
       contests_[sharing[i]] = std::move(contests[i]);
     }
     return {};
+  }
+
+  // What no encoding keeps, with the line of the profile that wants it.
+  [[nodiscard]] Error in_budget(const Error& error) const {
+    const SceneBudget& budget = profile_.budget;
+    const std::uint32_t line = budget.bytes_per_triangle ? budget.bytes_per_triangle->line
+                               : budget.slowdown         ? budget.slowdown->line
+                                                         : 0;
+    if (error.code != Errc::kBudgetUnreachable || line == 0) return error;
+    return {error.code, profile_.cite(line) + ": " + error.detail};
   }
 
   // Whether a tree has the same geometry store as others, so that surfaces that touch still touch.
@@ -604,7 +614,7 @@ class Cook {
     }
     if (best_tree == tried_.size()) return false;
     std::vector<Candidate>& candidates = contests_[best_tree].candidates;
-    candidates[chosen_[best_tree]].rejected = "over the budget of the file's bytes";
+    candidates[chosen_[best_tree]].rejected = kOverFileBytes;
     candidates[best_candidate].rejected.clear();
     chosen_[best_tree] = best_candidate;
     return true;

@@ -60,6 +60,12 @@ struct Contest {
   QueryCost baseline{};              // of wide8 with arrays, whether that was tried or not
 };
 
+/// Candidate::rejected of what a budget excludes: its bytes per triangle, its slowdown, the bytes of
+/// the file.
+inline constexpr const char* kOverBytes = "over the budget of bytes";
+inline constexpr const char* kOverTime = "over the budget of time";
+inline constexpr const char* kOverFileBytes = "over the budget of the file's bytes";
+
 /// Which candidates may be chosen: those that pass their gates and that boxtree::runtime alone can
 /// read. Codecs of boxtree::paper serve comparison; they are chosen only if nothing else was tried,
 /// as when one was requested.

@@ -326,6 +326,13 @@ TEST(CookScene, ABudgetOfBytesIsKeptOrRefusedWithTheNearest) {
   EXPECT_NE(refused.error().detail.find("; a larger 'tolerance' allows fewer"), std::string::npos)
       << refused.error().detail;
   EXPECT_EQ(test::read_text(out), before);
+  for (const std::string budget : {"bytes_per_triangle = 1", "slowdown = 0.5"}) {
+    const fs::path text = folder.write("scene.toml", "[scene]\n[budget]\n" + budget + "\n");
+    const Result<Summary> none = cook_job(scene_job({kLevel}, out, text));
+    EXPECT_EQ(none.code(), Errc::kBudgetUnreachable);
+    EXPECT_NE(none.error().detail.find("scene.toml:3: " + budget + ": "), std::string::npos)
+        << none.error().detail;
+  }
 }
 
 // A limit of the file's bytes has every encoding tried, and so has try_all; the grid that was tried
@@ -400,6 +407,37 @@ leave_out = true
   EXPECT_TRUE(told("mesh wall", "scene.toml:6"));
   EXPECT_TRUE(told("object barrels", "scene.toml:11"));
   EXPECT_EQ(kept_bytes(cooked.summary), cooked.summary.file_bytes);
+}
+
+// Also of how vertices are stored, be it by the goal, exactness, a codec or a budget.
+TEST(CookScene, EncodingsNameTheLineThatDecidedOnThem) {
+  test::TempFolder folder;
+  CookOptions options;
+  options.may_use_arrays = true;
+  const auto line_of = [&](const std::string& text, const std::string& part) {
+    const CookedFileOf cooked(kLevel, options, folder.write("scene.toml", text));
+    for (const WhyLine& why : cooked.summary.why) {
+      if (why.part == part && why.owner == "mesh floor") return why.line;
+    }
+    return std::string("no such part");
+  };
+  const auto expect_line = [&](const std::string& text, const std::string& nodes,
+                               const std::string& vertices) {
+    SCOPED_TRACE(text);
+    EXPECT_EQ(line_of(text, "nodes"), nodes);
+    EXPECT_EQ(line_of(text, "vertices"), vertices);
+  };
+  const std::string scene = "[scene]\n";
+  const std::string exact = "scene.toml:2: exact = true";
+  for (const std::string goal : {"for = \"speed\"", "for = \"memory\""}) {
+    expect_line(scene + goal + "\n", "scene.toml:2: " + goal, "scene.toml:2: " + goal);
+  }
+  expect_line(scene + "exact = true\ncodec = \"wide4\"\n", "scene.toml:3: codec = \"wide4\"",
+              exact);
+  expect_line(scene + "tolerance = 0.0005\n", "", "scene.toml:2: tolerance = 0.0005");
+  expect_line(scene + "[budget]\nslowdown = 1.05\n", "scene.toml:3: slowdown = 1.05",
+              "scene.toml:3: slowdown = 1.05");
+  expect_line(scene, "", "");
 }
 
 // A thousand instances of twenty props take a tenth of the bytes of cooking every one as triangles,
