@@ -120,9 +120,8 @@ std::string reason(const Candidate& candidate, const Rated& rated, const Candida
   if (!is_wide(candidate.codec) && is_wide(chosen.codec)) {
     return "a codec of boxtree::paper: --codec chooses it";
   }
-  if (rated.bytes > wishes.max_bytes_per_triangle.value_or(kInfinite))
-    return "over the budget of bytes";
-  if (rated.slowdown > wishes.max_slowdown.value_or(kInfinite)) return "over the budget of time";
+  if (rated.bytes > wishes.max_bytes_per_triangle.value_or(kInfinite)) return kOverBytes;
+  if (rated.slowdown > wishes.max_slowdown.value_or(kInfinite)) return kOverTime;
   const bool is_placed_otherwise =
       positioning_of(candidate.geometry) != positioning_of(chosen.geometry);
   if (is_placed_otherwise && rated.score == kInfinite) return "another geometry";
@@ -132,13 +131,14 @@ std::string reason(const Candidate& candidate, const Rated& rated, const Candida
   }
   switch (wishes.goal) {
     case Goal::kMemory:
-      return "more bytes";
+      return rated.bytes > chosen_rated.bytes ? "more bytes" : "as many bytes, tried later";
     case Goal::kSpeed:
-      return "more time";
+      return rated.slowdown > chosen_rated.slowdown ? "more time" : "as much time, tried later";
     case Goal::kBalance:
       break;
   }
-  return "larger product of bytes and time";
+  return rated.score > chosen_rated.score ? "larger product of bytes and time"
+                                          : "the same product of bytes and time, tried later";
 }
 
 }  // namespace
