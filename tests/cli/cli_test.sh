@@ -148,7 +148,7 @@ expect 1 "$boxtree" cook cube.obj -o refused.bxt --max-slowdown 0.5
 grep -q '^boxtree: budget_unreachable: refused.bxt: wanted a slowdown of at most 0.5; .*, slowdown 1' err
 printf '[budget]\nslowdown = 0.5\n' >fast.toml
 expect 1 "$boxtree" cook cube.obj -o refused.bxt --profile fast.toml
-grep -q '^boxtree: budget_unreachable: refused.bxt: wanted a slowdown of at most 0.5; .*, slowdown 1' err
+grep -q '^boxtree: budget_unreachable: fast.toml:2: slowdown = 0.5: wanted a slowdown of at most 0.5; .*, slowdown 1' err
 [ ! -e refused.bxt ]
 
 expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --json
