@@ -98,8 +98,14 @@ class Account {
     return of_file;
   }
 
-  [[nodiscard]] bool is_wanted_exact(std::size_t mesh) const {
-    return mesh < cooked_.plan.meshes.size() && cooked_.plan.meshes[mesh].exact;
+  // What decided how a tree's vertices are stored: a precision that was wanted, or else the goal.
+  [[nodiscard]] Aspect aspect_of_vertices(std::size_t tree) const {
+    const std::size_t mesh = cooked_.mesh_of_tree[tree];
+    const bool is_exact = mesh < cooked_.plan.meshes.size() && cooked_.plan.meshes[mesh].exact;
+    if (is_exact) return Aspect::kPrecision;
+    const bool is_grid = cooked_.trees[tree].geometry.geometry == GeometryId::kGrid;
+    const Decision* precision = is_grid ? decision_on(Aspect::kPrecision, mesh) : nullptr;
+    return precision != nullptr && precision->line != 0 ? Aspect::kPrecision : Aspect::kCodec;
   }
 
   // Of a budget that excluded some encoding of a tree; 0 if none did.
@@ -129,16 +135,13 @@ class Account {
       const std::string decided = reason_of_option(*aspect, entry);
       if (!decided.empty()) line.reason += line.reason.empty() ? decided : "; " + decided;
     }
-    const bool is_encoding = aspect == Aspect::kCodec || aspect == Aspect::kPrecision;
-    // No precision was wanted: the goal has chosen the grid.
-    if (decision != nullptr && decision->line == 0 && is_encoding && !is_wanted_exact(*mesh)) {
-      decision = decision_on(Aspect::kCodec, mesh);
-    }
     if (decision != nullptr) {
       line.reason += line.reason.empty() ? decision->reason : "; " + decision->reason;
       line.line = cited(decision->line);
-      const std::uint32_t budget = is_encoding ? line_of_budget(entry.owner) : 0;
-      if (decision->line == 0 && budget != 0) {
+      const bool is_encoding = aspect == Aspect::kCodec || aspect == Aspect::kPrecision;
+      const std::uint32_t budget =
+          is_encoding && decision->line == 0 ? line_of_budget(entry.owner) : 0;
+      if (budget != 0) {
         line.reason += ", within the budget";
         line.line = cited(budget);
       }
@@ -167,11 +170,7 @@ class Account {
         return fmt::format("codec {}", codec_name(cooked_.trees[entry.owner].nodes.codec));
       case SectionKind::kVertices:
       case SectionKind::kCorners:
-        aspect = Aspect::kPrecision;
-        if (cooked_.trees[entry.owner].geometry.geometry != GeometryId::kGrid &&
-            !is_wanted_exact(cooked_.mesh_of_tree[entry.owner])) {
-          aspect = Aspect::kCodec;
-        }
+        aspect = aspect_of_vertices(entry.owner);
         return geometry_reason(entry.kind, cooked_.trees[entry.owner]);
       case SectionKind::kFaceIds:
         aspect = Aspect::kFaceIds;
