@@ -72,10 +72,8 @@ bool is_active(const BoundTree& tree, const CastCandidate& found,
 }
 
 Eigen::Vector3d front_normal(const CastCandidate& found) noexcept {
-  const Eigen::Vector3d front = unit_normal(found.triangle);
-  return found.is_placed && unit_normal(found.in_tree).isZero(0)
-             ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-             : front;
+  if (found.is_placed && unit_normal(found.in_tree).isZero(0)) return Eigen::Vector3d::Zero();
+  return unit_normal(found.triangle);
 }
 
 Eigen::Vector3d face_normal(const CastCandidate& found, const Eigen::Vector3d& normal) noexcept {
