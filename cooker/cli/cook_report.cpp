@@ -113,8 +113,7 @@ void add_contest(const CookedTree& cooked, std::string& text) {
       "    times: means of a model, the same everywhere but for --costs: compare them with each "
       "other;\n"
       "    by AVX2 alone the slowdown of exact and grid is up to 0.2 more, the model's processor "
-      "has "
-      "AVX-512;\n"
+      "has AVX-512;\n"
       "    boxes: {};\n"
       "    shallow: {}\n",
       kBoxMeaning, kShallowMeaning);

@@ -290,8 +290,7 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   if (is_by_work) {
     section.notes +=
         " The model is of a processor with AVX-512: by AVX2 alone the slowdown of exact and grid "
-        "is "
-        "up to 0.2 more.";
+        "is up to 0.2 more.";
   }
   if (is_by_work && mesh.timed) {
     section.notes += fmt::format(" Times are measured, of {}.", contacts_meaning(mesh));

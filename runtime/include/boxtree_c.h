@@ -159,7 +159,7 @@ BXT_API const char* bxt_error_meaning(bxt_status status);
 
 /// What a function that failed says of it.
 typedef struct bxt_error {
-  uint32_t struct_size;     ///< sizeof(bxt_error); up to 65536 where memory behind it continues `message`.
+  uint32_t struct_size;     ///< sizeof(bxt_error); up to 65536 if `message` goes on behind it.
   bxt_status status;        ///< What the function returned.
   uint64_t message_length;  ///< Of the whole message without the 0 behind it, be it cut or not.
   char message[496];  ///< What went wrong, where, and what was expected; cut where it is long.
