@@ -46,8 +46,15 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/format/include/boxtree/ ${PROJECT_SOURCE
 install(FILES ${BOXTREE_INCLUDE_DIR}/boxtree/configuration.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree COMPONENT boxtree_development)
 # Of an installation as a whole; packages have copies of their own (BoxtreePackages.cmake).
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/boxtree RENAME copyright
+set(BOXTREE_DOC_DIR ${CMAKE_INSTALL_DATAROOTDIR}/doc/boxtree)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${BOXTREE_DOC_DIR} RENAME copyright
         COMPONENT boxtree_licence)
+# The pages and the samples that they speak of, in the folders in which they are here, so that links hold.
+file(GLOB pages ${PROJECT_SOURCE_DIR}/*.md)
+install(FILES ${pages} ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${BOXTREE_DOC_DIR} COMPONENT boxtree_development)
+foreach(folder docs samples)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${BOXTREE_DOC_DIR} COMPONENT boxtree_development)
+endforeach()
 # With the program, so that boxtree::cli is there exactly where the program is.
 if(BOXTREE_BUILD_COOKER)
   install(TARGETS boxtree_cli EXPORT boxtreeCliTargets

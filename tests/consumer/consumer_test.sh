@@ -40,7 +40,9 @@ for generator in Ninja "Unix Makefiles"; do
   grep -q 'Cooking crate.bxt' "$work/log" || fail "$generator: a .mtl that is gone did not recook"
   mv "$work/crate.mtl" "$work/samples/meshes/crate.mtl"
 done
-[ -s "$work/prefix/share/doc/boxtree/copyright" ] || fail "no licence is installed"
+pages=$work/prefix/share/doc/boxtree
+[ -s "$pages/copyright" ] || fail "no licence is installed"
+python3 "$source/tests/docs/links_test.py" "$pages" || fail "a link of the pages that are installed"
 # Nothing but public headers is installed, and each of them is enough by itself: no header that
 # decodes nodes, and none of the slow ones of the standard library.
 public=$(cd "$source" && ls runtime/include/boxtree format/include/boxtree | grep '\.h$' | sort)
