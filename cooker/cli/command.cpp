@@ -333,14 +333,27 @@ Option* Command::add(CLI::Option* parsed) {
   return options_.emplace_back(std::make_unique<Option>(parsed)).get();
 }
 
+// An empty value is that of a variable of a script that is not set, and does not leave the option
+// out.
+Option* Command::add_text(CLI::Option* parsed) {
+  if (!parsed->get_positional()) {
+    parsed->check([parsed](const std::string& value) {
+      return value.empty()
+                 ? fmt::format("expected {}, found an empty value", parsed->get_type_name())
+                 : std::string();
+    });
+  }
+  return add(parsed);
+}
+
 // CLI11 leaves it to the C++ library what characters of a path are.
 template <class T>
 Option* Command::add_option(const std::string& name, T& out, const std::string& help) {
   if constexpr (std::is_same_v<T, std::filesystem::path>) {
-    return add(app_->add_option_function<std::string>(
+    return add_text(app_->add_option_function<std::string>(
         name, [&out](const std::string& text) { out = named_path(text); }, help));
   } else if constexpr (std::is_same_v<T, std::vector<std::filesystem::path>>) {
-    return add(app_->add_option_function<std::vector<std::string>>(
+    return add_text(app_->add_option_function<std::vector<std::string>>(
         name,
         [&out](const std::vector<std::string>& texts) {
           out.clear();
@@ -355,9 +368,13 @@ Option* Command::add_option(const std::string& name, T& out, const std::string& 
     option->expect_number<double>();
     return option;
   }
-  Option* const option = add(app_->add_option(name, out, help));
-  if constexpr (std::is_arithmetic_v<T>) option->expect_number<T>();
-  return option;
+  if constexpr (std::is_arithmetic_v<T>) {
+    Option* const option = add(app_->add_option(name, out, help));
+    option->expect_number<T>();
+    return option;
+  } else {
+    return add_text(app_->add_option(name, out, help));
+  }
 }
 
 // What values of options may be.

@@ -189,6 +189,7 @@ class Command {
   /// Of the program.
   void set_words(std::vector<std::string> words);
   Option* add(CLI::Option* parsed);
+  Option* add_text(CLI::Option* parsed);
   /// Whether the command line has this word.
   [[nodiscard]] bool is_word(const std::string& word) const;
 

@@ -116,7 +116,10 @@ std::string meant_option(const std::string& word, const std::vector<std::string>
 // An option that nobody took.
 std::string unknown_option(const Command& command, const std::string& word) {
   const std::string start = "'" + word + "' is ";
-  if (has_option(command, word)) return start + "an option that comes after " + command.name();
+  // Those of `query` may also stand behind its kinds.
+  for (const Command* at = &command; at->parent() != nullptr; at = at->parent()) {
+    if (has_option(*at, word)) return start + "an option that comes after " + at->name();
+  }
   std::vector<std::string> owners;
   for (const Command* inner : command.commands()) {
     if (has_option(*inner, word)) owners.push_back(inner->name());
