@@ -18,6 +18,7 @@
 #include <assimp/Importer.hpp>
 #include <assimp/commonMetaData.h>
 #include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 #include <assimp/version.h>
 #include <fmt/format.h>
@@ -102,6 +103,21 @@ void undo_unit(aiScene& scene) {
   if (is_collada && scene.mRootNode != nullptr) scene.mRootNode->mTransformation = aiMatrix4x4();
 }
 
+// Where none of its readers takes a file by its ending, assimp tries all of them by the first
+// bytes: the name of the reader that has read it, if it is not one for this ending; else empty. Of
+// .xml too, which several formats end in.
+std::string other_format(const Assimp::Importer& importer, const SourceFile& source) {
+  const int index = importer.GetPropertyInteger("importerIndex", -1);
+  const aiImporterDesc* const reader =
+      index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
+  if (reader == nullptr || has_extension(source.path(), "xml")) return {};
+  std::istringstream endings(reader->mFileExtensions);
+  for (std::string ending; endings >> ending;) {
+    if (has_extension(source.path(), ending)) return {};
+  }
+  return reader->mName;
+}
+
 // Records the files read in `use`. Errors do not name the source. No post-processing flags: each
 // may drop, reorder, merge or generate data.
 Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, ReadOrder order,
@@ -145,6 +161,12 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, ReadOrder 
                       why)};
     }
     return Error{Errc::kImportFailed, why.empty() ? "no scene" : why};
+  }
+  if (const std::string format = other_format(importer, source); !format.empty()) {
+    return Error{Errc::kImportFailed,
+                 fmt::format("expected a file of the format {}, found one that assimp's \"{}\" "
+                             "takes: give it the ending of its format",
+                             source.path().extension().string(), format)};
   }
   if (!log.loss().empty()) {
     return Error{Errc::kImportFailed,

@@ -142,11 +142,15 @@ Status SceneIntake::take(const Placements& placements) {
     }
     if (*mesh == kNoMesh) continue;
     const Pose pose = pose_of(placement.transform);
-    if (!pose.matrix().allFinite() || !has_double_inverse(pose)) {
+    const bool is_finite = pose.matrix().allFinite();
+    if (!is_finite || !has_double_inverse(pose)) {
       return Error{Errc::kImportFailed,
-                   fmt::format("{}: node '{}': its transform {}; --flatten makes one tree of a "
-                               "file, whatever its transforms",
-                               context_.file, placement.name, pose_fault(pose))};
+                   fmt::format("{}: node '{}': its transform {}{}", context_.file, placement.name,
+                               pose_fault(pose),
+                               is_finite ? "; --flatten makes one tree of a file, also of what it "
+                                           "flattens"
+                                         : " in single precision, in which assimp reads it: at "
+                                           "most 3.4e38, with the transforms above it")};
     }
     const auto id = static_cast<std::uint32_t>(out_.instances.size());
     out_.instances.push_back({placement.name, *mesh, id, pose});

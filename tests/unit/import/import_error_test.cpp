@@ -132,6 +132,24 @@ TEST_F(ImportErrorTest, AMeshOfAnotherFormatIsToldByHowItBegins) {
   }
 }
 
+// Found by a newcomer: assimp took it by its first bytes, without any of what our reader checks.
+TEST_F(ImportErrorTest, AMeshThatAnotherReaderTakesIsRefused) {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const std::string ending : {".gltf", ".glb"}) {
+    const Error error = fail("a" + ending, obj);
+    EXPECT_EQ(error.code, Errc::kImportFailed);
+    EXPECT_TRUE(has(error.detail, "expected a file of the format " + ending +
+                                      ", found one that assimp's \"Wavefront Object Importer\" "
+                                      "takes: give it the ending of its format"))
+        << error.detail;
+  }
+  const Error error = fail("a.glb",
+                           "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
+                           "float y\nproperty float z\nelement face 1\nproperty list uchar int "
+                           "vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_TRUE(has(error.detail, "rename it to end in .ply")) << error.detail;
+}
+
 std::string ply(std::string_view vertices, std::string_view faces, int vertex_count,
                 int face_count) {
   return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertex_count) +

@@ -369,11 +369,15 @@ TEST_F(ImportSceneTest, PosesThatCannotBeInvertedAreNamed) {
     EXPECT_EQ(error.code, Errc::kImportFailed) << how;
     EXPECT_TRUE(has(error.detail, "'wheel'"));
     EXPECT_TRUE(has(error.detail, "not invertible"));
+    EXPECT_TRUE(has(error.detail, "--flatten"));
   }
   const Error error = fail_scene(placed(R"("translation":[1e39,0,0])"));
   EXPECT_EQ(error.code, Errc::kImportFailed);
   EXPECT_TRUE(has(error.detail, "not finite"));
   EXPECT_TRUE(has(error.detail, "'wheel'"));
+  // --flatten cannot place it either.
+  EXPECT_FALSE(has(error.detail, "--flatten"));
+  EXPECT_TRUE(has(error.detail, "in single precision, in which assimp reads it: at most 3.4e38"));
 }
 
 // Nine nodes below one another, each scaled by a power of two: from determinants below all doubles
