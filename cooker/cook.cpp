@@ -212,6 +212,14 @@ class Cook {
     return plan_.meshes[mesh].materials && input_.scene.meshes[mesh].materials.size() > 1;
   }
 
+  [[nodiscard]] std::uint32_t line_of_hidden_faces(std::size_t mesh) const {
+    const auto found = std::find_if(
+        plan_.decisions.begin(), plan_.decisions.end(), [mesh](const Decision& decision) {
+          return decision.aspect == Aspect::kHiddenFaces && decision.owner == mesh;
+        });
+    return found == plan_.decisions.end() ? 0 : found->line;
+  }
+
   Status try_meshes() {
     const auto grids = this->grids();
     if (!grids) return grids.error();
@@ -224,8 +232,10 @@ class Cook {
       announce(progress_, "build " + mesh.name + number);
       drop_hidden_faces(mesh, plan_.meshes[m].hidden_faces);
       if (input_.has_top_level && mesh.faces.empty()) {  // no instance is of a tree without faces
-        return Error{Errc::kProfileInvalid,
-                     mesh.name + ": hidden_faces leave nothing of it; leave_out drops an object"};
+        return Error{
+            Errc::kProfileInvalid,
+            fmt::format("{}:{}: hidden_faces leave nothing of {}; leave_out drops an object",
+                        profile_.path.string(), line_of_hidden_faces(m), mesh.name)};
       }
       take_face_numbers(m);
       SearchOptions search = search_options(m, (*grids)[m].has_value());

@@ -29,8 +29,9 @@ std::string with_nearest(std::string_view wording, std::string_view name,
 
 }  // namespace
 
-void Complaints::add(std::uint32_t line, const std::string& text) {
+void Complaints::add(std::uint32_t line, const std::string& text, Errc code) {
   if (!wants(line)) return;
+  code_ = code;
   line_ = line;
   text_ = text;
 }
@@ -55,7 +56,7 @@ std::string Complaints::tables_with(std::string_view key) const {
 
 Status Complaints::status() const {
   if (text_.empty()) return {};
-  return Error{Errc::kProfileInvalid, fmt::format("{}:{}: {}", path_, line_, text_)};
+  return Error{code_, fmt::format("{}:{}: {}", path_, line_, text_)};
 }
 
 const TomlEntry* Fields::find(std::string_view key) {
@@ -131,9 +132,8 @@ std::string Fields::found_instead_of(std::string_view key) const {
   const auto misspelt = std::find_if(table_.begin(), table_.end(), [&](const TomlEntry& entry) {
     return !suggestion(entry.key, std::span(&meant, 1)).empty();
   });
-  return misspelt == table_.end()
-             ? "none"
-             : fmt::format("\"{}\" in line {}", misspelt->key, misspelt->line);
+  return misspelt == table_.end() ? "none"
+                                  : fmt::format("\"{}\" in line {}", misspelt->key, misspelt->line);
 }
 
 std::optional<std::vector<Stated<std::string>>> Fields::texts(std::string_view key) {

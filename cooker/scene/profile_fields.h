@@ -34,7 +34,7 @@ class Complaints {
 
   /// Whether a complaint of this line would be kept; if not, its text need not be made.
   [[nodiscard]] bool wants(std::uint32_t line) const { return text_.empty() || line < line_; }
-  void add(std::uint32_t line, const std::string& text);
+  void add(std::uint32_t line, const std::string& text, Errc code = Errc::kProfileInvalid);
   /// "WHERE: expected EXPECTED, found FOUND".
   void expected(std::uint32_t line, std::string_view where, std::string_view expected,
                 std::string_view found);
@@ -43,6 +43,7 @@ class Complaints {
  private:
   std::string path_;
   TableKeys tables_;
+  Errc code_ = Errc::kProfileInvalid;
   std::string text_;
   std::uint32_t line_ = 0;
 };

@@ -80,10 +80,14 @@ Result<TomlTable> parse_toml(std::string_view text, std::string_view path) {
   if (!parsed) {
     const toml::parse_error& error = parsed.error();
     const std::string_view what = error.description();
-    const bool is_no_value = what.find("could not determine value type") != what.npos;
-    return Error{Errc::kProfileInvalid,
-                 fmt::format("{}:{}: {}{}", path, error.source().begin.line, what,
-                             is_no_value ? "; a text stands in quotes" : "")};
+    // A word that stands for a value; it may begin as nan, inf, true or false do.
+    const bool is_no_value = what.find("could not determine value type") != what.npos ||
+                             what.find("parsing floating-point: expected '") != what.npos ||
+                             what.find("parsing boolean") != what.npos;
+    return Error{
+        Errc::kProfileInvalid,
+        fmt::format("{}:{}: {}{}", path, error.source().begin.line, what,
+                    is_no_value ? "; a text stands in quotes, and a flag is true or false" : "")};
   }
   return table_of(parsed.table());
 }
