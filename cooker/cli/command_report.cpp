@@ -419,6 +419,9 @@ int run(const ReportArguments& arguments) {
     if (is_standard_stream(output)) continue;
     if (Status status = check_replaced(output, kind); !status)
       return usage("report: " + status.error().detail);
+    if (output.empty()) continue;
+    if (const Result<AtomicFile> writable = AtomicFile::create(output); !writable)
+      return fail(writable.error());
   }
   const std::string page = in_lower_case(arguments.output.extension().string());
   if (!page.empty() && page != ".html" && page != ".htm") {

@@ -31,6 +31,7 @@ bool is_shown(std::string_view character) {
 // Where standard error takes nothing either, the exit status has to say it all: fmt would throw.
 void complain(std::string_view what) noexcept {
   const std::string line = "boxtree: " + shown(what) + "\n";
+  static_cast<void>(std::fflush(stdout));  // what was printed before stands before it
   static_cast<void>(std::fputs(line.c_str(), stderr));
 }
 

@@ -34,7 +34,7 @@ class StepPrinter {
   void operator()(const std::string& step) {
     if (!enabled_ || Clock::now() - start_ < (is_terminal_ ? kSoon : kLineEvery)) return;
     const std::string line =
-        is_terminal_ ? "\r\033[K" + shown(step) + " ..." : shown(step) + " ...\n";
+        is_terminal_ ? "\r\033[K" + shown(step) + " ..." : "boxtree: " + shown(step) + " ...\n";
     static_cast<void>(std::fputs(line.c_str(), stderr));
     static_cast<void>(std::fflush(stderr));
     printed_ = is_terminal_;

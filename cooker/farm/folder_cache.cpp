@@ -68,6 +68,10 @@ Status put(TemporaryFile& file, const fs::path& place) {
 }  // namespace
 
 Result<FolderCache> FolderCache::open(const fs::path& folder, std::uint64_t most_bytes) {
+  std::error_code ignored;
+  if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
+    return Error{Errc::kWriteFailed, folder.string() + ": expected a folder, found a file"};
+  }
   for (const char* kind : {"ac", "cas"}) {
     std::error_code error;
     fs::create_directories(folder / kind, error);

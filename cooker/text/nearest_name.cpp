@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace boxtree::cooker {
@@ -30,7 +31,11 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
 std::string nearest_name(std::string_view name, std::span<const std::string> names) {
   const auto nearest =
       std::min_element(names.begin(), names.end(), [name](const auto& a, const auto& b) {
-        return edit_distance(name, a) < edit_distance(name, b);
+        // Of equally near ones those that begin alike: fewer mistakes are at the first letter.
+        const auto mistakes = [name](const std::string& of) {
+          return std::pair(edit_distance(name, of), of.substr(0, 1) != name.substr(0, 1));
+        };
+        return mistakes(a) < mistakes(b);
       });
   return nearest == names.end() ? std::string() : *nearest;
 }

@@ -29,6 +29,12 @@ TEST(NearestName, IsTheFirstOfThoseWithTheLeastDistance) {
   EXPECT_EQ(nearest_name("x", {}), "");
 }
 
+TEST(NearestName, OfEquallyNearOnesBeginsAlike) {
+  const std::array<std::string, 3> shells = {"bash", "zsh", "fish"};
+  EXPECT_EQ(nearest_name("fsh", shells), "fish");
+  EXPECT_EQ(nearest_name("zsg", shells), "zsh");
+}
+
 TEST(Listed, SeparatesTheLastByOr) {
   const std::array<std::string, 3> names = {"cook", "book", "query"};
   EXPECT_EQ(listed(names), "cook, book or query");
