@@ -95,7 +95,8 @@ Json verification_json(const std::filesystem::path& file, const Verification& ve
   Json json = {{"file", file.string()}, {"ok", verification.findings.empty()}};
   json["findings"] = Json::array();
   for (const Error& finding : verification.findings) {
-    json["findings"].push_back({{"code", static_cast<unsigned>(finding.code)},
+    json["findings"].push_back({{"number", json["findings"].size() + 1},
+                                {"code", static_cast<unsigned>(finding.code)},
                                 {"name", error_info(finding.code).name},
                                 {"detail", finding.detail}});
   }
@@ -106,8 +107,10 @@ void print_verification(const std::filesystem::path& file, const Verification& v
                         bool quiet) {
   if (verification.is_reported) return;
   const std::string name = input_name(file);
-  for (const Error& finding : verification.findings) {
-    static_cast<void>(fail(finding));
+  const std::size_t count = verification.findings.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string number = count == 1 ? "" : fmt::format(" (finding {} of {})", i + 1, count);
+    complain(verification.findings[i].message() + number);
   }
   if (verification.findings.empty() && !quiet) {
     fmt::print("{}: {}\n", shown(name), verification.summary);
