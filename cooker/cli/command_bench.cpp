@@ -11,6 +11,7 @@
 
 #include "cooker/choose/cost_file.h"
 #include "cooker/choose/measure.h"
+#include "cooker/choose/timed_work.h"
 #include "cooker/choose/workload.h"
 #include "cooker/cli/command.h"
 #include "cooker/cli/commands.h"
@@ -42,10 +43,11 @@ constexpr WorkloadSize kWholeWorkload{.camera = 512, .lattice = 32};
 constexpr WorkloadSize kQuickWorkload{20'000, 2'000, 2'000, 20, 0, 128, 0, 16};
 
 Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
-                   const BenchArguments& arguments) {
+                   const BenchArguments& arguments, TimedWork& timed_work) {
   const Workload workload = make_workload(bounds_in_object_space(tree),
                                           arguments.quick ? kQuickWorkload : kWholeWorkload);
-  const Result<QueryFigures> figures = measure_queries(tree, workload, arguments.runs);
+  const Result<QueryFigures> figures =
+      timed_work.add([&] { return measure_queries(tree, workload, arguments.runs); });
   if (!figures) return figures.error();
   const Result<OpenFigures> open = measure_open(path, index, 20 * arguments.runs);
   if (!open) return open.error();
@@ -266,15 +268,17 @@ int run(const BenchArguments& arguments) {
   }
   if (arguments.calibrate) return run_calibration(arguments);
   Json rows = Json::array();
+  TimedWork timed_work;
   for (const std::filesystem::path& path : arguments.files) {
     const Result<File> file = map_file(path);
     if (!file) return fail(file.error());
     for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
       const Result<Tree> tree = Tree::bind(*file, i);
       if (!tree) return fail({tree.code(), path.string() + ": " + tree.error().detail});
-      const Result<Json> row = arguments.pages         ? pages(path, i, *tree, arguments)
-                               : arguments.approximate ? bench_approximate(path, *tree, arguments)
-                                                       : bench(path, i, *tree, arguments);
+      const Result<Json> row = arguments.pages ? pages(path, i, *tree, arguments)
+                               : arguments.approximate
+                                   ? bench_approximate(path, *tree, arguments)
+                                   : bench(path, i, *tree, arguments, timed_work);
       if (!row) return fail(row.error());
       if (arguments.json) {
         rows.push_back(*row);
@@ -283,7 +287,19 @@ int run(const BenchArguments& arguments) {
       }
     }
   }
-  if (arguments.json) print({{"files", rows}});
+  const bool is_timed = !arguments.pages && !arguments.approximate;
+  if (arguments.json) {
+    Json document = {{"files", rows}};
+    if (is_timed) {
+      document["processor_share"] = timed_work.processor_share();
+      document["speed_ratio"] = timed_work.speed_ratio();
+    }
+    print(document);
+  }
+  if (const std::string why = timed_work.disturbance(); !why.empty()) {
+    warn(why +
+         ", so times may be wrong: measure again when the machine, and its host, do nothing else");
+  }
   return 0;
 }
 
