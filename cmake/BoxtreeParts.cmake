@@ -57,10 +57,12 @@ boxtree_choose(BOXTREE_BUILT_QUERIES BOXTREE_QUERIES "${BOXTREE_QUERIES}" ${BOXT
 
 # A scene answers its kinds by querying its trees; a cast walks along the line of its shape's center
 # as a ray does, a contact is a cast that stays where it is, and a hull is one more shape that is cast.
+# The search for a distance begins with closest points.
 set(needed_by_scene ray box sphere point pair)
 set(needed_by_cast ray)
 set(needed_by_collide cast)
 set(needed_by_hull cast)
+set(needed_by_distance point)
 foreach(query IN LISTS BOXTREE_BUILT_QUERIES)
   foreach(needed IN LISTS needed_by_${query})
     if(NOT needed IN_LIST BOXTREE_BUILT_QUERIES)

@@ -20,13 +20,6 @@
 namespace boxtree {
 namespace {
 
-Errc search(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
-  if constexpr (kWalksTreesByVectors) {
-    if (has_wide_nodes(tree)) return walk_wide(tree, query, budget);
-  }
-  return search_best_first(tree, query, budget);
-}
-
 // An upper bound of the length of a vector, even where its square underflows.
 double length_above(const Eigen::Vector3d& v) noexcept {
   constexpr double kMore = 1 + 4 * kRoundoffF64;
@@ -64,7 +57,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
     walked = walk_nearest(tree, query);
   } else {
     SearchBudget budget{options.node_budget};
-    walked = search(tree, query, budget);
+    walked = search_within(tree, query, budget);
     left = budget.left;
     result.converged = !budget.is_spent;
   }

@@ -6,6 +6,7 @@
 
 #include "runtime/tree/root_box.h"
 #include "runtime/walk/frontier.h"
+#include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
 namespace {
@@ -139,6 +140,13 @@ Errc search_best_first(const BoundTree& tree, PointQuery& query, SearchBudget& b
   };
   const auto read = [&](NodeRef leaf) { return query.read(leaf); };
   return search_best_first(tree, query, budget, {expand, read});
+}
+
+Errc search_within(const BoundTree& tree, PointQuery& query, SearchBudget& budget) noexcept {
+  if constexpr (kWalksTreesByVectors) {
+    if (has_wide_nodes(tree)) return walk_wide(tree, query, budget);
+  }
+  return search_best_first(tree, query, budget);
 }
 
 }  // namespace boxtree

@@ -45,4 +45,7 @@ Errc search_best_first(const BoundTree& tree, PointQuery& query, SearchBudget& b
 /// By vectors; see walk_tree.h.
 Errc walk_wide(const BoundTree& tree, PointQuery& query, SearchBudget& budget);
 
+/// By vectors where the tree's nodes can be; the same to the bit.
+Errc search_within(const BoundTree& tree, PointQuery& query, SearchBudget& budget) noexcept;
+
 }  // namespace boxtree

@@ -17,8 +17,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
+#include "runtime/query/child_gaps.h"
 #include "runtime/query/known_extents.h"
+#include "runtime/query/nearby_leaves.h"
 #include "runtime/query/nearest_triangles.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/relative_pose.h"
@@ -36,11 +39,13 @@ class DistanceWalk {
  public:
   /// `approximation` is in the metric's units.
   DistanceWalk(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
-               const WorldMetric& metric, const Approximation& approximation) noexcept
+               const WorldMetric& metric, const Approximation& approximation,
+               const std::optional<NearbyLeaves>& nearby) noexcept
       : sides_{{{first, pose.to_second(), metric.in_first()},
                 {second, pose.to_first(), metric.in_second()}}},
         metric_(metric),
         node_budget_(approximation.node_budget),
+        nearby_(nearby),
         bound_(first, second, nullptr),
         nearest_(first, second, pose, metric, approximation) {}
 
@@ -58,6 +63,10 @@ class DistanceWalk {
         {sides_[0].gaps.squared_distance(root.box[0], image),
          sides_[1].gaps.squared_distance(sides_[0].to_other.hull(root.box[0]), root.box[1]),
          nearest_.axes().squared_distance(extent_of(root, 0), extent_of(root, 1))});
+    if (nearby_ && root_key < nearest_.enough()) {
+      const Errc error = nearest_.begin_with(nearby_->first, nearby_->second);
+      if (error != Errc::kOk) return error;
+    }
     if (!frontier_.push(root_key, nearest_.enough(), root)) return Errc::kInternal;
     double key = 0;
     Entry entry;
@@ -93,8 +102,6 @@ class DistanceWalk {
     ErasedCodec codec;
     const AffineMap& to_other;
     const GapWeights& gaps;
-    ErasedCodec::Children children;
-    std::array<Box<double>, ErasedCodec::Children::kWidth> extents;  // of the children
   };
   // A subtree of each tree.
   struct Entry {
@@ -146,52 +153,55 @@ class DistanceWalk {
                               extent(entry.box[0]) > extent(sides_[1].to_other.hull(entry.box[1])))
             ? 0
             : 1;
-    Side& side = sides_[s];
+    const Side& side = sides_[s];
     const Side& other = sides_[1 - s];
-    ErasedCodec::Children& children = side.children;
-    const Errc error = bound_.count(side.codec.expand(entry.ref[s], entry.box[s], children));
-    if (error != Errc::kOk) return error;
-    // Before anything is found no axes are worth it. The node holds nothing but its children.
-    if (nearest_.has_any()) {
-      Box<double> all = empty_box<double>();
-      for (std::uint32_t i = 0; i < children.count; ++i) {
-        side.extents[i] = extent_of(s, children.ref[i], children.is_leaf(i), children.box(i));
-        expand(all, side.extents[i]);
-      }
-      nearest_.known(s).keep(entry.ref[s], false, all);
-    }
-    return queue_children(entry, s, key, extent_of(entry, 1 - s),
-                          other.to_other.hull(entry.box[1 - s]));
+    const OtherSubtree subtree{entry.box[1 - s], other.to_other.hull(entry.box[1 - s]),
+                               extent_of(entry, 1 - s)};
+    const Errc error = expand_with_gaps(*side.codec.tree, bound_, entry.ref[s], entry.box[s],
+                                        {side.to_other, side.gaps, other.gaps, nearest_.axes(), s},
+                                        subtree, children_, gaps_);
+    return error != Errc::kOk ? error : queue_children(entry, s, key, subtree.extent);
   }
 
   // Puts child i in the place of its parent.
   void descend(Entry& entry, std::size_t s, std::uint32_t i) const noexcept {
-    const ErasedCodec::Children& children = sides_[s].children;
-    entry.box[s] = children.box(i);
-    entry.ref[s] = children.ref[i];
-    entry.is_leaf[s] = children.is_leaf(i);
+    entry.box[s] = children_.box(i);
+    entry.ref[s] = children_.ref[i];
+    entry.is_leaf[s] = children_.is_leaf(i);
   }
 
   // A child is no nearer than its parent, of which more may be known: it was compared along other
-  // axes, too. `other_extent` and `other_image` are of the other subtree, along the axes and in the
-  // space of the side that was expanded.
+  // axes, too. `other_extent`: of the other subtree.
   Errc queue_children(const Entry& entry, std::size_t s, double parent_key,
-                      const Box<double>& other_extent, const Box<double>& other_image) noexcept {
-    const Side& side = sides_[s];
-    const Side& other = sides_[1 - s];
-    const double enough = nearest_.enough();
+                      const Box<double>& other_extent) noexcept {
+    const AlignedAxes& axes = nearest_.axes();
+    // What is learnt does not depend on the allowed error: with a larger one, keys are the same.
+    const double best = nearest_.best(), enough = nearest_.enough();
+    // Before anything is found no axes are worth it.
+    const bool has_axes = nearest_.has_any();
+    Box<double> all = empty_box<double>();
     std::array<double, kWidth> key;
     std::array<std::uint32_t, kWidth> order;  // children that can matter, nearest first
     std::size_t passed = 0;
-    for (std::uint32_t i = 0; i < side.children.count; ++i) {
-      double k = parent_key;
-      if (nearest_.has_any())
-        k = std::max(k, nearest_.axes().squared_distance(side.extents[i], other_extent));
-      const Box<double> box = side.children.box(i);
-      if (k < enough) k = std::max(k, side.gaps.squared_distance(box, other_image));
-      if (k < enough) {
-        k = std::max(k, other.gaps.squared_distance(side.to_other.hull(box), entry.box[1 - s]));
+    for (std::uint32_t i = 0; i < children_.count; ++i) {
+      double k = std::max(parent_key, gaps_.apart[i]);
+      const NodeRef ref = children_.ref[i];
+      const bool is_leaf = children_.is_leaf(i);
+      Box<double> extent = gaps_.extent(i);
+      bool is_known = true;
+      if (has_axes) {
+        const Box<double>* const known = nearest_.known(s).find(ref, is_leaf);
+        is_known = known != nullptr;
+        if (is_known) extent = *known;
+        k = std::max(k, is_known ? axes.squared_distance(extent, other_extent) : gaps_.along[i]);
       }
+      // A leaf that may matter is read now: it will meet many others.
+      if (k < best && is_leaf && !is_known) {
+        const Errc error = nearest_.find_extent(s, ref, extent);
+        if (error != Errc::kOk) return error;
+        k = std::max(k, axes.squared_distance(extent, other_extent));
+      }
+      if (has_axes) expand(all, extent);
       if (!(k < enough)) {
         nearest_.leave(k);
         continue;
@@ -204,7 +214,9 @@ class DistanceWalk {
       key[place] = k;
       order[place] = i;
     }
-    const bool goes_down = passed > 0 && !nearest_.has_any();
+    // The node holds nothing but its children.
+    if (has_axes) nearest_.known(s).keep(entry.ref[s], false, all);
+    const bool goes_down = passed > 0 && !has_axes;
     // Farthest first: of equal keys the one pushed last is taken first.
     Entry child = entry;
     for (std::size_t n = passed; n-- > 0;) {
@@ -237,10 +249,13 @@ class DistanceWalk {
   std::array<Side, 2> sides_;
   const WorldMetric& metric_;
   const std::uint64_t node_budget_;
+  const std::optional<NearbyLeaves> nearby_;
   PairBound bound_;
   std::uint64_t visited_ = 0;
   bool is_spent_ = false;
   NearestTriangles nearest_;
+  ErasedCodec::Children children_;  // of the node that was expanded last
+  ChildGaps gaps_;
   bool has_next_ = false;
   double next_key_ = 0;
   Entry next_;

@@ -26,9 +26,6 @@ class LeafReading {
 
   /// Errors: those of corrupt leaves.
   [[nodiscard]] Errc read(NodeRef first_leaf, NodeRef second_leaf) noexcept;
-  /// The same of one tree's leaf.
-  [[nodiscard]] Errc read_first(NodeRef leaf) noexcept;
-  [[nodiscard]] Errc read_second(NodeRef leaf) noexcept;
 
   // What was read last.
   TriangleBatch first;
@@ -39,6 +36,9 @@ class LeafReading {
   Box<double> all_moved_bounds;
 
  private:
+  Errc read_first(NodeRef leaf) noexcept;
+  Errc read_second(NodeRef leaf) noexcept;
+
   static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
 
   const BoundTree& first_tree_;

@@ -8,6 +8,8 @@
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/separation.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/query/child_gaps.h"
+#include "runtime/walk/read_leaf.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree {
@@ -65,26 +67,33 @@ void NearestTriangles::set_enough() noexcept {
 // walk of a smaller one.
 Errc NearestTriangles::compare(NodeRef first, NodeRef second, double key) noexcept {
   leaves_key_ = key;
-  if (const Errc error = find_extent(0, first); error != Errc::kOk) return error;
-  if (const Errc error = find_extent(1, second); error != Errc::kOk) return error;
-  if (const double apart = axes_.squared_distance(extent_[0], extent_[1]); !(apart < best_)) {
+  Box<double> first_extent, second_extent;
+  if (const Errc error = find_extent(0, first, first_extent); error != Errc::kOk) return error;
+  if (const Errc error = find_extent(1, second, second_extent); error != Errc::kOk) return error;
+  if (const double apart = axes_.squared_distance(first_extent, second_extent); !(apart < best_)) {
     leave_triangles(apart);
     return Errc::kOk;
   }
   if (const Errc error = leaves_.read(first, second); error != Errc::kOk) return error;
-  for (const std::size_t tree : {0u, 1u}) set_extents(tree);
+  std::array<Box<double>, kMaxLeafTriangles> second_extents;
+  for (std::uint32_t j = 0; j < leaves_.second.count; ++j) {
+    second_extents[j] = axes_.extent_of(1, leaves_.second.triangle(j));
+  }
   const GapWeights& gaps = metric_.in_first();
   const double upper_before = pair_.upper;
   for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
-    const double to_leaf = gaps.squared_distance(leaves_.first_bounds[i], leaves_.all_moved_bounds);
+    const Triangle triangle = leaves_.first.triangle(i);
+    const Box<double> extent = axes_.extent_of(0, triangle);
+    const double to_leaf =
+        std::max(axes_.squared_distance(extent, second_extent),
+                 gaps.squared_distance(leaves_.first_bounds[i], leaves_.all_moved_bounds));
     if (!(to_leaf < best_)) {
       leave_triangles(to_leaf);
       continue;
     }
-    const Triangle triangle = leaves_.first.triangle(i);
     for (std::uint32_t j = 0; j < leaves_.second.count; ++j) {
       const double apart =
-          std::max(axes_.squared_distance(extents_[0][i], extents_[1][j]),
+          std::max(axes_.squared_distance(extent, second_extents[j]),
                    gaps.squared_distance(leaves_.first_bounds[i], leaves_.moved_bounds[j]));
       if (!(apart < best_)) {
         leave_triangles(apart);
@@ -97,29 +106,30 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second, double key) noexce
   return Errc::kOk;
 }
 
-// Sets the extent of a leaf along the axes. Most leaves have met others since these changed, and
-// are not read.
-Errc NearestTriangles::find_extent(std::size_t tree, NodeRef leaf) noexcept {
-  if (const Box<double>* known = known_[tree].find(leaf, true)) {
-    extent_[tree] = *known;
-    return Errc::kOk;
-  }
-  const Errc error = tree == 0 ? leaves_.read_first(leaf) : leaves_.read_second(leaf);
-  if (error != Errc::kOk) return error;
-  set_extents(tree);
-  known_[tree].keep(leaf, true, extent_[tree]);
+Errc NearestTriangles::begin_with(NodeRef first, NodeRef second) noexcept {
+  const AlignedAxes axes = axes_;
+  if (const Errc error = compare(first, second, 0); error != Errc::kOk) return error;
+  left_ = pair_.lower = std::numeric_limits<double>::infinity();
+  in_vain_ = 0;
+  if (pair_.upper <= approximation_.max_distance) return Errc::kOk;
+  pair_ = NearestPair();
+  rounding_ = 0;
+  axes_ = axes;
+  set_enough();
   return Errc::kOk;
 }
 
-// Sets the extents of the leaf that was read last.
-void NearestTriangles::set_extents(std::size_t tree) noexcept {
-  extent_[tree] = empty_box<double>();
-  const std::uint32_t count = tree == 0 ? leaves_.first.count : leaves_.second.count;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    extents_[tree][i] =
-        axes_.extent_in_first(tree == 0 ? leaves_.first.triangle(i) : leaves_.moved[i]);
-    expand(extent_[tree], extents_[tree][i]);
+// Most leaves have met others since the axes changed, and are not read.
+Errc NearestTriangles::find_extent(std::size_t tree, NodeRef leaf, Box<double>& extent) noexcept {
+  if (const Box<double>* known = known_[tree].find(leaf, true)) {
+    extent = *known;
+    return Errc::kOk;
   }
+  const Errc error = read_leaf(tree == 0 ? first_ : second_, leaf, learnt_);
+  if (error != Errc::kOk) return error;
+  extent = extent_of(axes_, tree, learnt_);
+  known_[tree].keep(leaf, true, extent);
+  return Errc::kOk;
 }
 
 // Corners are taken relative to one of them, so that rounding depends on the triangles' size and

@@ -61,6 +61,9 @@ class NearestTriangles {
   /// The triangles of two leaves, whose squared distance is at least `key`. Errors: those of
   /// corrupt leaves.
   [[nodiscard]] Errc compare(NodeRef first, NodeRef second, double key) noexcept;
+  /// The same before the search, which comes upon them again: only what is found counts, and that
+  /// only within the maximal distance.
+  [[nodiscard]] Errc begin_with(NodeRef first, NodeRef second) noexcept;
 
   /// From now on boxes are also compared along this world vector and across it.
   void face(const Eigen::Vector3d& along) noexcept {
@@ -69,13 +72,18 @@ class NearestTriangles {
   }
   /// Along the line between the nearest points so far; at first the vector passed to face().
   [[nodiscard]] const AlignedAxes& axes() const noexcept { return axes_; }
-  /// What is known of extents along them, of the first tree, 0, or the second, 1. compare() adds
-  /// those of leaves.
+  /// What is known of extents along them, of the first tree, 0, or the second, 1. Those of leaves
+  /// are added where they are needed.
   [[nodiscard]] KnownExtents& known(std::size_t tree) noexcept { return known_[tree]; }
+  /// Finds the extent of a leaf along the axes, and reads it where that is not known. Errors: those
+  /// of corrupt leaves.
+  [[nodiscard]] Errc find_extent(std::size_t tree, NodeRef leaf, Box<double>& extent) noexcept;
 
   /// The squared distance from which pairs can be skipped: they could improve the answer by no more
   /// than the allowed error or rounding, or are beyond the maximal distance.
   [[nodiscard]] double enough() const noexcept { return enough_; }
+  /// The same for an allowed error of 0.
+  [[nodiscard]] double best() const noexcept { return best_; }
   /// Records a skipped pair, by the lower bound of its squared distance.
   void leave(double key) noexcept { left_ = std::min(left_, key); }
   /// The least key of the skipped pairs.
@@ -96,8 +104,6 @@ class NearestTriangles {
   // The distance from which a pair cannot improve the answer by more than `rounding`.
   [[nodiscard]] double best_to_improve(double rounding) const noexcept;
   void set_enough() noexcept;
-  Errc find_extent(std::size_t tree, NodeRef leaf) noexcept;
-  void set_extents(std::size_t tree) noexcept;
 
   const BoundTree& first_;
   const BoundTree& second_;
@@ -106,7 +112,7 @@ class NearestTriangles {
   const Approximation& approximation_;
   double leaves_key_ = 0;  // of the pair of leaves that is compared
   double enough_ = 0;
-  double best_ = 0;  // enough_ for an allowed error of 0
+  double best_ = 0;
   double left_ = std::numeric_limits<double>::infinity();
   NearestPair pair_;
   double rounding_ = 0;                                // of the best distance
@@ -114,9 +120,7 @@ class NearestTriangles {
   Eigen::Vector3d between_ = Eigen::Vector3d::Zero();  // separates its triangles; world
   AlignedAxes axes_;
   LeafReading leaves_;
-  // Along the axes: of the triangles of the leaves that were read last, and of the leaves compared.
-  std::array<std::array<Box<double>, kMaxLeafTriangles>, 2> extents_;
-  std::array<Box<double>, 2> extent_;
+  TriangleBatch learnt_;  // from the leaf whose extent was found last
   std::array<KnownExtents, 2> known_;
 };
 

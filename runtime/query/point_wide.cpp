@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "runtime/query/point_triangles-inl.h"
+#include "runtime/walk/expand-inl.h"
 #include "runtime/walk/nearest-inl.h"
 #include "runtime/walk/prefetch-inl.h"
 
@@ -116,54 +117,21 @@ Errc walk_point_nodes(const BoundTree& tree, const WideCodec<Node>& codec, Point
   return NearestWalk<Node, PointFaces<Node>>(codec, faces).run(root);
 }
 
-// Counts and decodes a node.
-template <class Node>
-HWY_INLINE Errc decode_node(const WideCodec<Node>& codec, WalkBound& nodes, std::uint32_t number,
-                            const Box<float>& box, ChildBoxes& boxes, WideLinks& links) {
-  const NodeView<Node> node(codec, number);
-  links = node.links();
-  for (std::size_t part = 0; part < kParts; ++part) decode(node, box, part, boxes);
-  return nodes.count(check_links(codec, number, links));
-}
-
 // A node's children and their keys, those of squared_distance() to the bit.
 HWY_NOINLINE Errc expand(const BoundTree& tree, PointQuery& query, NodeRef ref,
                          const Box<double>& box, NearChildren& out) {
-  Box<float> in_floats;
-  for (std::size_t k = 0; k < 3; ++k) {
-    in_floats.low[k] = static_cast<float>(box.low[k]);
-    in_floats.high[k] = static_cast<float>(box.high[k]);
-  }
-  ChildBoxes boxes;
-  WideLinks links;
-  const Errc error = with_wide_codec<Errc>(tree, [&](const auto& codec) {
-    return decode_node(codec, query.nodes, ref.first, in_floats, boxes, links);
-  });
-  if (error != Errc::kOk) return error;
-  const hn::CappedTag<double, kWideChildren> d;
-  const hn::Rebind<float, decltype(d)> floats;
-  for (std::size_t i = 0; i < kWideChildren; i += hn::MaxLanes(d)) {
-    auto sum = hn::Zero(d);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto p = hn::Set(d, query.point[static_cast<Eigen::Index>(k)]);
-      const auto low = hn::PromoteTo(d, hn::Load(floats, boxes.low[k] + i));
-      const auto high = hn::PromoteTo(d, hn::Load(floats, boxes.high[k] + i));
-      const auto outside = hn::Max(hn::Zero(d), hn::Max(hn::Sub(low, p), hn::Sub(p, high)));
-      sum = hn::Add(sum, hn::Mul(outside, outside));
-      hn::StoreU(low, d, out.low[k].data() + i);
-      hn::StoreU(high, d, out.high[k].data() + i);
-    }
-    hn::StoreU(sum, d, out.key.data() + i);
-  }
-  out.count = links.child_count;
-  out.leaf_mask = ~links.inner_mask & ((1u << links.child_count) - 1);
-  for (std::uint32_t i = 0; i < out.count; ++i) {
-    const std::uint32_t face = first_face(links, i);
-    out.ref[i] = out.is_leaf(i)
-                     ? NodeRef{face, std::min(kLeafFaces, tree.counts().faces_in_leaves - face)}
-                     : NodeRef{node_number(links, i), 0};
-  }
-  return Errc::kOk;
+  return expand_in_doubles(
+      tree, query.nodes, ref, box, out, [&](std::size_t i, const DoubleBoxes& boxes) HWY_ATTR {
+        const Doubles d;
+        auto sum = hn::Zero(d);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto p = hn::Set(d, query.point[static_cast<Eigen::Index>(k)]);
+          const auto outside =
+              hn::Max(hn::Zero(d), hn::Max(hn::Sub(boxes.low[k], p), hn::Sub(p, boxes.high[k])));
+          sum = hn::Add(sum, hn::Mul(outside, outside));
+        }
+        hn::StoreU(sum, d, out.key.data() + i);
+      });
 }
 
 Errc search_point(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {

@@ -201,8 +201,8 @@ AlignedAxes WorldMetric::axes_along(const Eigen::Vector3d& along,
 Box<double> AlignedAxes::extent_of(std::size_t tree, const Box<double>& box) const noexcept {
   return map_[tree].hull(box);
 }
-Box<double> AlignedAxes::extent_in_first(const Triangle& triangle) const noexcept {
-  return bounds_of(map_[0].apply(triangle));
+Box<double> AlignedAxes::extent_of(std::size_t tree, const Triangle& triangle) const noexcept {
+  return bounds_of(map_[tree].apply(triangle));
 }
 double AlignedAxes::squared_distance(const Box<double>& first,
                                      const Box<double>& second) const noexcept {

@@ -64,16 +64,19 @@ class AlignedAxes {
 
   /// The extent along the axes of a box of the first tree, 0, or the second, 1, in its own space.
   [[nodiscard]] Box<double> extent_of(std::size_t tree, const Box<double>& box) const noexcept;
-  /// Of a triangle of the first tree, or of the second that has been moved into the first's space.
-  [[nodiscard]] Box<double> extent_in_first(const Triangle& triangle) const noexcept;
+  /// Of a triangle, likewise.
+  [[nodiscard]] Box<double> extent_of(std::size_t tree, const Triangle& triangle) const noexcept;
   /// A lower bound of the squared distance between objects with these extents.
   [[nodiscard]] double squared_distance(const Box<double>& first,
                                         const Box<double>& second) const noexcept;
 
+  /// From the first tree's space or the second's.
+  [[nodiscard]] const AffineMap& map(std::size_t tree) const noexcept { return map_[tree]; }
+  [[nodiscard]] const GapWeights& weights() const noexcept { return weights_; }
+
  private:
   friend class WorldMetric;
 
-  // From the tree's spaces.
   std::array<AffineMap, 2> map_{{{Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()},
                                  {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()}}};
   GapWeights weights_;

@@ -23,7 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
-#if HWY_TARGET == HWY_SCALAR
+#if !BOXTREE_HAS_SPECIAL_WALKS
 Errc walk_placed_box(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& faces) {
   return traverse_overlap(tree, ErasedCodec{&tree}, faces);
 }

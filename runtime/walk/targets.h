@@ -15,3 +15,9 @@
 #define HWY_DISABLED_TARGETS (HWY_AVX3_DL | BOXTREE_NO_WALK_TARGETS)
 /// Those of walk/cluster_avx512.cpp, which walks by AVX2 or AVX-512 call.
 #define BOXTREE_LEAF_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX2 | HWY_AVX3 | BOXTREE_NO_WALK_TARGETS)
+
+/// Whether walks in which few programs spend their time are compiled for this instruction set, too.
+/// SSE4 takes the generic ones where a build has AVX2: few machines walk by it then.
+#define BOXTREE_HAS_SPECIAL_WALKS \
+  (HWY_TARGET != HWY_SCALAR &&    \
+   (HWY_TARGET != HWY_SSE4 || (HWY_TARGETS & (HWY_AVX2 | HWY_AVX3)) == 0))

@@ -32,7 +32,7 @@ smaller 'rays of wide4' "$work/small-fast/program" $((120 * 1024))
 smaller 'rays of wide4, MinSizeRel without vectors' "$work/small/program" $((60 * 1024))
 
 # What all queries share needs none of them: each compiles without the others, all sources as one to save time.
-for query in 'ray;cast' 'ray;cast;collide' 'ray;cast;hull' box frustum point sphere pair distance within; do
+for query in 'ray;cast' 'ray;cast;collide' 'ray;cast;hull' box frustum point sphere pair 'point;distance' within; do
   rm -rf "$work/alone"
   cmake -S "$source" -B "$work/alone" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
     -DBOXTREE_BUILD_COOKER=OFF -DBOXTREE_BUILD_TESTS=OFF -DBOXTREE_PRECOMPILE_HEADERS=OFF \

@@ -50,8 +50,11 @@ struct Distance {
 /// one is found if there is any. Empty trees are infinitely far from anything.
 ///
 /// The walk is best-first: with a budget it may be stopped anywhere and has then made the best of
-/// it. Nodes visited do not grow with the error that is allowed, as long as its queue (of 2048
-/// pairs) suffices; when it is full, part of the walk is depth-first and the bounds stay true.
+/// it. Before it, unless the budget is 0 or the bounds are too far apart, up to six searches for a
+/// closest point, back and forth between the trees, visit at most 256 nodes and leaves each, which
+/// no budget counts. Nodes visited do not grow with the error that is allowed, as long as its queue
+/// (of 2048 pairs) suffices; when it is full, part of the walk is depth-first and the bounds stay
+/// true.
 ///
 /// Errors: kInvalidPose, kInvalidQuery (options that are NaN or negative) and the codes of corrupt
 /// bytes as for closest_hit(). Never allocates; takes half a megabyte of stack.
