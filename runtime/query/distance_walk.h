@@ -8,9 +8,9 @@
 //
 // What makes the search short are axes along and across the line between the nearest points so far.
 // Boxes reach far beyond what they hold along them; so the extents of nodes and leaves are learnt
-// from what was read below them (KnownExtents), and the keys of waiting pairs grow with them. A leaf
-// that may matter is read when it is first met. And the first pair is near already (nearby_leaves.h),
-// so that the axes hardly change after it.
+// from what was read below them (KnownExtents), and the keys of waiting pairs grow with them. A
+// leaf that may matter is read when it is first met. And the first pair is near already
+// (nearby_leaves.h), so that the axes hardly change after it.
 #pragma once
 
 #include <algorithm>
