@@ -253,6 +253,10 @@ function(boxtree_add_cooked_assets)
     set_property(GLOBAL PROPERTY "BOXTREE_INPUT_OF_${output}" "${input}")
     set_property(GLOBAL PROPERTY "BOXTREE_OPTIONS_OF_${output}" "${ARG_OPTIONS}")
     set_property(GLOBAL PROPERTY "BOXTREE_TARGET_OF_${output}" "${assets_target}")
+    if(CMAKE_GENERATOR MATCHES "Ninja" AND "${input}${output}" MATCHES "[&'\"$^`*?<>|]")
+      message(WARNING "boxtree_add_cooked_assets: ninja stops reading a depfile at the '${CMAKE_MATCH_0}' of\n  ${input}\nand so "
+                      "cooks it again at each build; name it, or the folder, without, or use another generator")
+    endif()
     # As CMake names what it builds: below the folder of the build, wherever that is.
     cmake_path(RELATIVE_PATH output BASE_DIRECTORY ${CMAKE_BINARY_DIR} OUTPUT_VARIABLE title)
     if(title MATCHES "^\\.\\.(/|$)")

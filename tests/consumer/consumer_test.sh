@@ -43,6 +43,28 @@ done
 pages=$work/prefix/share/doc/boxtree
 [ -s "$pages/copyright" ] || fail "no licence is installed"
 python3 "$source/tests/docs/links_test.py" "$pages" || fail "a link of the pages that are installed"
+# Found by a newcomer: samples that need the whole project were configured and built, and made nothing. Those in C need
+# what is installed.
+for sample in api level bullet_drop; do
+  if cmake -S "$pages/samples/$sample" -B "$work/sample" >"$work/log" 2>&1; then fail "samples/$sample is a project of its own"; fi
+  grep -q 'DBOXTREE_BUILD_SAMPLES=ON' "$work/log" || { cat "$work/log"; fail "samples/$sample"; }
+  rm -rf "$work/sample"
+done
+{ cmake -S "$pages/samples/c" -B "$work/sample" -DCMAKE_PREFIX_PATH="$work/prefix" && cmake --build "$work/sample"; } \
+  >"$work/log" 2>&1 || { cat "$work/log"; fail "samples/c is no project of its own"; }
+for program in first_ray tour; do [ -x "$work/sample/$program" ] || fail "samples/c does not make $program"; done
+# Found by a newcomer: ninja stops reading a depfile at some characters, and cooked such meshes again each time.
+mkdir -p "$work/r&d"
+cp "$work/samples/meshes/crate.obj" "$work/samples/meshes/crate.mtl" "$work/r&d"
+printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(named LANGUAGES CXX)' 'find_package(boxtree CONFIG REQUIRED)' \
+  'add_library(named INTERFACE)' 'boxtree_add_cooked_assets(TARGET named MESHES crate.obj)' >"$work/r&d/CMakeLists.txt"
+for generator in Ninja "Unix Makefiles"; do
+  cmake -S "$work/r&d" -B "$work/named" -G "$generator" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" \
+    >"$work/log" 2>&1 || { cat "$work/log"; fail "a folder r&d"; }
+  warned=$(tr -s ' \n' ' ' <"$work/log" | grep -c "ninja stops reading a depfile at the '&'" || true)
+  [ "$warned" = "$([ "$generator" = Ninja ] && echo 1 || echo 0)" ] || { cat "$work/log"; fail "$generator warned $warned times"; }
+  rm -rf "$work/named"
+done
 # Nothing but public headers is installed, and each of them is enough by itself: no header that
 # decodes nodes, and none of the slow ones of the standard library.
 public=$(cd "$source" && ls runtime/include/boxtree format/include/boxtree | grep '\.h$' | sort)
