@@ -31,9 +31,11 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
 std::string nearest_name(std::string_view name, std::span<const std::string> names) {
   const auto nearest =
       std::min_element(names.begin(), names.end(), [name](const auto& a, const auto& b) {
-        // Of equally near ones those that begin alike: fewer mistakes are at the first letter.
+        // Of those that one mistake is enough for, first what begins alike: fewer are at the first
+        // letter.
         const auto mistakes = [name](const std::string& of) {
-          return std::pair(edit_distance(name, of), of.substr(0, 1) != name.substr(0, 1));
+          const std::size_t distance = edit_distance(name, of);
+          return std::pair(distance, distance == 1 && of.substr(0, 1) != name.substr(0, 1));
         };
         return mistakes(a) < mistakes(b);
       });

@@ -29,7 +29,7 @@ TEST(NearestName, IsTheFirstOfThoseWithTheLeastDistance) {
   EXPECT_EQ(nearest_name("x", {}), "");
 }
 
-TEST(NearestName, OfEquallyNearOnesBeginsAlike) {
+TEST(NearestName, OfOneMistakeBeginsAlike) {
   const std::array<std::string, 3> shells = {"bash", "zsh", "fish"};
   EXPECT_EQ(nearest_name("fsh", shells), "fish");
   EXPECT_EQ(nearest_name("zsg", shells), "zsh");
