@@ -157,14 +157,8 @@ struct RayTest : RayInTree {
     if (!found) return;
     // The hit lies in the triangle's bounds; clamping t to them makes it agree with every key
     // above.
-    double t = std::clamp(found->t, interval.enter, interval.leave);
-    // One that begins on the face, as far as rounding tells, meets it there; but where the bounds
-    // are behind it, walks skip them.
-    if (t < t_min) {
-      if (interval.leave < t_min || !(t_min - t <= slab.blur(shear.axis_z))) return;
-      t = t_min;
-    }
-    if (t > t_max) return;
+    const double t = std::clamp(found->t, interval.enter, interval.leave);
+    if (t < t_min || t > t_max) return;
     FaceRef face{kNoFaceId, face_index};
     if (wishes != nullptr) {
       RayCandidate candidate{true, t, face, half, found->u, found->v, triangle};

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -106,12 +105,6 @@ class RaySlab {
   [[nodiscard]] static double power_above(double x) noexcept {
     constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
     return std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + kMantissa) & ~kMantissa);
-  }
-
-  /// By how much the parameter of a hit may be off: what moves along an axis by 2^-42 of the
-  /// largest coordinates that `margin` is of.
-  [[nodiscard]] double blur(int axis) const noexcept {
-    return 0x1p7 * (low_origin_[axis] - high_origin_[axis]) * std::abs(inverse_[axis]);
   }
 
   /// 1 / direction, but finite; negative where the line comes from the high side of an axis.
