@@ -323,8 +323,13 @@ void ProfileReader::read_hidden_faces(Fields& fields, ProfileMesh& mesh) {
   const std::filesystem::path path = beside(*list).value;
   const Result<std::string> text = read_whole_file(path, kMaxFaceListBytes, profile_.path.string());
   if (!text) {
-    // With its code: a list that is not there yet may be later.
-    complaints_.add(list->line, "hidden_faces: " + text.error().detail, text.error().code);
+    const Error& error = text.error();
+    if (error.code == Errc::kFileNotFound) {  // with its code: it may be there later
+      complaints_.add(list->line, "hidden_faces: " + error.detail, error.code);
+    } else {
+      complaints_.expected(list->line, "hidden_faces", "the name of a list of faces",
+                           error.message());
+    }
     return;
   }
   profile_.files_read.push_back(path);

@@ -9,10 +9,9 @@
 
 namespace boxtree {
 
-Errc expand_with_gaps_plainly(const BoundTree& tree, PairBound& bound, NodeRef node,
-                              const Box<double>& box, const GapMaps& maps,
-                              const OtherSubtree& other, ErasedCodec::Children& children,
-                              ChildGaps& gaps) noexcept {
+Errc expand_with_gaps_scalar(const BoundTree& tree, PairBound& bound, NodeRef node,
+                             const Box<double>& box, const GapMaps& maps, const OtherSubtree& other,
+                             ErasedCodec::Children& children, ChildGaps& gaps) noexcept {
   const Errc error = bound.count(ErasedCodec{&tree}.expand(node, box, children));
   if (error != Errc::kOk) return error;
   for (std::uint32_t i = 0; i < children.count; ++i) {
@@ -29,8 +28,8 @@ Errc expand_with_gaps_plainly(const BoundTree& tree, PairBound& bound, NodeRef n
   return Errc::kOk;
 }
 
-Box<double> extent_plainly(const AlignedAxes& axes, std::size_t tree,
-                           const TriangleBatch& triangles) noexcept {
+Box<double> extent_scalar(const AlignedAxes& axes, std::size_t tree,
+                          const TriangleBatch& triangles) noexcept {
   Box<double> all = empty_box<double>();
   for (std::uint32_t i = 0; i < triangles.count; ++i) {
     expand(all, axes.extent_of(tree, triangles.triangle(i)));
@@ -46,13 +45,13 @@ Errc expand_with_gaps(const BoundTree& tree, PairBound& bound, NodeRef node, con
       return expand_with_gaps_wide(tree, bound, node, box, maps, other, children, gaps);
     }
   }
-  return expand_with_gaps_plainly(tree, bound, node, box, maps, other, children, gaps);
+  return expand_with_gaps_scalar(tree, bound, node, box, maps, other, children, gaps);
 }
 
 Box<double> extent_of(const AlignedAxes& axes, std::size_t tree,
                       const TriangleBatch& triangles) noexcept {
   if constexpr (kWalksTreesByVectors) return extent_wide(axes, tree, triangles);
-  return extent_plainly(axes, tree, triangles);
+  return extent_scalar(axes, tree, triangles);
 }
 
 }  // namespace boxtree

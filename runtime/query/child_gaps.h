@@ -59,13 +59,13 @@ struct ChildGaps {
                                     const TriangleBatch& triangles) noexcept;
 
 /// One by one.
-[[nodiscard]] Errc expand_with_gaps_plainly(const BoundTree& tree, PairBound& bound, NodeRef node,
-                                            const Box<double>& box, const GapMaps& maps,
-                                            const OtherSubtree& other,
-                                            ErasedCodec::Children& children,
-                                            ChildGaps& gaps) noexcept;
-[[nodiscard]] Box<double> extent_plainly(const AlignedAxes& axes, std::size_t tree,
-                                         const TriangleBatch& triangles) noexcept;
+[[nodiscard]] Errc expand_with_gaps_scalar(const BoundTree& tree, PairBound& bound, NodeRef node,
+                                           const Box<double>& box, const GapMaps& maps,
+                                           const OtherSubtree& other,
+                                           ErasedCodec::Children& children,
+                                           ChildGaps& gaps) noexcept;
+[[nodiscard]] Box<double> extent_scalar(const AlignedAxes& axes, std::size_t tree,
+                                        const TriangleBatch& triangles) noexcept;
 
 /// By vectors; precondition: the tree has wide nodes. Not in builds without vectors.
 [[nodiscard]] Errc expand_with_gaps_wide(const BoundTree& tree, PairBound& bound, NodeRef node,

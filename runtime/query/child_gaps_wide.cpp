@@ -22,11 +22,11 @@ namespace {
 Errc expand_children(const BoundTree& tree, PairBound& bound, NodeRef node, const Box<double>& box,
                      const GapMaps& maps, const OtherSubtree& other,
                      ErasedCodec::Children& children, ChildGaps& gaps) {
-  return expand_with_gaps_plainly(tree, bound, node, box, maps, other, children, gaps);
+  return expand_with_gaps_scalar(tree, bound, node, box, maps, other, children, gaps);
 }
 Box<double> extent_of_triangles(const AlignedAxes& axes, std::size_t tree,
                                 const TriangleBatch& triangles) {
-  return extent_plainly(axes, tree, triangles);
+  return extent_scalar(axes, tree, triangles);
 }
 #else
 HWY_INLINE DoubleVector every(double number) {
@@ -142,7 +142,7 @@ Errc expand_with_gaps_wide(const BoundTree& tree, PairBound& bound, NodeRef node
                            const Box<double>& box, const GapMaps& maps, const OtherSubtree& other,
                            ErasedCodec::Children& children, ChildGaps& gaps) noexcept {
   if (!tree.has_float_nodes())
-    return expand_with_gaps_plainly(tree, bound, node, box, maps, other, children, gaps);
+    return expand_with_gaps_scalar(tree, bound, node, box, maps, other, children, gaps);
   return BOXTREE_DISPATCH(expand_children)(tree, bound, node, box, maps, other, children, gaps);
 }
 

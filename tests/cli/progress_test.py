@@ -22,7 +22,7 @@ LINE_EVERY = 2.0
 GIVE_UP_AFTER = 20.0  # by then nearly all of a run's steps come later than SHOWN_AFTER
 ERASE = "\r\x1b[K"  # to the start of the line, and clear it
 STEPS = re.compile(rf"(?:{re.escape(ERASE)}(?:import|build|write) [\w.]+ \.\.\.)+")
-LINES = re.compile(r"(?:\[ *\d+ %\] [\w .:,-]+ \.\.\.\n)+")
+LINES = re.compile(r"(?:boxtree: \[ *\d+ %\] [\w .:,-]+ \.\.\.\n)+")
 JOBS = re.compile(rf"(?:(?:{re.escape(ERASE)})+\[#*\.*\] \d+ of \d+ jobs, \d+ a second, \d+ s left \.\.\.)+")
 SHARES = re.compile(rf"(?:{re.escape(ERASE)}\[#*\.*\] [\w .:,-]+ \.\.\.)+")
 

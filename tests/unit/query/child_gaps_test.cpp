@@ -83,7 +83,7 @@ TEST(ChildGaps, ByVectorsAreTheSameToTheBit) {
         ASSERT_EQ(expand_with_gaps(first, bound, node, box, maps, other, children, gaps),
                   Errc::kOk);
         ASSERT_EQ(
-            expand_with_gaps_plainly(first, bound, node, box, maps, other, plain_children, plain),
+            expand_with_gaps_scalar(first, bound, node, box, maps, other, plain_children, plain),
             Errc::kOk);
         ASSERT_EQ(children.count, plain_children.count);
         ASSERT_EQ(children.leaf_mask, plain_children.leaf_mask);
@@ -103,9 +103,9 @@ TEST(ChildGaps, ByVectorsAreTheSameToTheBit) {
       }
       TriangleBatch leaf;
       ASSERT_EQ(read_leaf(first, node, leaf), Errc::kOk);
-      EXPECT_EQ(extent_of(axes, 0, leaf), extent_plainly(axes, 0, leaf));
+      EXPECT_EQ(extent_of(axes, 0, leaf), extent_scalar(axes, 0, leaf));
       leaf.count = 1 + static_cast<std::uint32_t>(turn) % leaf.count;
-      EXPECT_EQ(extent_of(axes, 0, leaf), extent_plainly(axes, 0, leaf));
+      EXPECT_EQ(extent_of(axes, 0, leaf), extent_scalar(axes, 0, leaf));
     }
   }
   EXPECT_GT(compared, 500u);
