@@ -320,7 +320,14 @@ fetched() {
 }
 platform_armhf() { emulated armhf armv7l arm-linux-gnueabihf "g++-arm-linux-gnueabihf qemu-user-static" qemu-arm-static; }
 platform_riscv64() { emulated riscv64 riscv64 riscv64-linux-gnu "g++-riscv64-linux-gnu qemu-user-static" qemu-riscv64-static; }
-platform_i386() { emulated i386 i686 i686-linux-gnu g++-i686-linux-gnu ""; }
+# As they are, or under QEMU where the kernel runs no programs of 32 bits.
+platform_i386() {
+  local runner=
+  install_missing g++-i686-linux-gnu
+  echo 'int main() {}' | i686-linux-gnu-g++ -static -x c++ - -o "$work/i386.probe"
+  "$work/i386.probe" 2>"$work/i386.probe.err" || runner=qemu-i386-static
+  emulated i386 i686 i686-linux-gnu "g++-i686-linux-gnu ${runner:+qemu-user-static}" "$runner"
+}
 platform_farm() {
   install_missing bazel-bootstrap nginx-light libnginx-mod-http-dav-ext slurm-wlm munge
   local engine
