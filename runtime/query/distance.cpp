@@ -45,21 +45,11 @@ Distance answer(const Placed& placed, const DistanceWalk& walk,
 
 // Apart from distance(), so that its stack is not there while nearby_leaves() has its own.
 [[gnu::noinline]] Result<Distance> search(const Placed& placed, const Approximation& approximation,
+                                          double root_distance,
                                           const std::optional<NearbyLeaves>& nearby) {
-  DistanceWalk walk(placed.first, placed.second, placed.pose, placed.metric, approximation, nearby);
-  if (const Errc error = walk.run(); error != Errc::kOk) return error;
+  DistanceWalk walk(placed.first, placed.second, placed.pose, placed.metric, approximation);
+  if (const Errc error = walk.run(root_distance, nearby); error != Errc::kOk) return error;
   return answer(placed, walk, approximation);
-}
-
-// Whether the bounds of the trees are no farther apart than that, as far as their boxes tell.
-bool may_be_within(const Placed& placed, double distance) noexcept {
-  const Box<double> first = root_box<double>(placed.first);
-  const Box<double> second = root_box<double>(placed.second);
-  const auto is_within = [distance](double squared) { return root_below(squared) <= distance; };
-  return is_within(
-             placed.metric.in_first().squared_distance(first, placed.pose.hull_in_first(second))) &&
-         is_within(placed.metric.in_second().squared_distance(placed.pose.to_second().hull(first),
-                                                              second));
 }
 
 }  // namespace
@@ -84,11 +74,13 @@ Result<Distance> distance(const Tree& first_tree, const Pose& first_pose, const 
   approximation.absolute_error = metric->from_world_above(options.absolute_error);
   approximation.max_distance = metric->from_world_above(options.max_distance);
   const Placed placed{first, first_pose, second, *pose, *metric};
+  const double root_distance =
+      metric->squared_distance(root_box<double>(first), root_box<double>(second), *pose);
   std::optional<NearbyLeaves> nearby;
-  if (options.node_budget > 0 && may_be_within(placed, approximation.max_distance)) {
+  if (options.node_budget > 0 && root_below(root_distance) <= approximation.max_distance) {
     nearby = nearby_leaves(first, second, *pose);
   }
-  return search(placed, approximation, nearby);
+  return search(placed, approximation, root_distance, nearby);
 }
 
 }  // namespace boxtree

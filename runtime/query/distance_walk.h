@@ -41,20 +41,20 @@ class DistanceWalk {
  public:
   /// `approximation` is in the metric's units.
   DistanceWalk(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
-               const WorldMetric& metric, const Approximation& approximation,
-               const std::optional<NearbyLeaves>& nearby) noexcept
+               const WorldMetric& metric, const Approximation& approximation) noexcept
       : sides_{{{first, pose.to_second(), metric.in_first()},
                 {second, pose.to_first(), metric.in_second()}}},
         metric_(metric),
         node_budget_(approximation.node_budget),
-        nearby_(nearby),
         bound_(first, second, nullptr),
         nearest_(first, second, pose, metric, approximation) {}
 
-  Errc run() noexcept {
+  /// `root_distance`: WorldMetric::squared_distance() of the root boxes; `nearby`: leaves to begin
+  /// with, if there are any.
+  Errc run(double root_distance, const std::optional<NearbyLeaves>& nearby) noexcept {
     Entry root;
     for (std::size_t s = 0; s < 2; ++s) {
-      const BoundTree& tree = *sides_[s].codec.tree;
+      const BoundTree& tree = sides_[s].tree;
       root.box[s] = root_box<double>(tree);
       root.ref[s] = tree.root_ref();
       root.is_leaf[s] = tree.is_leaf();
@@ -62,11 +62,9 @@ class DistanceWalk {
     const Box<double> image = sides_[1].to_other.hull(root.box[1]);
     nearest_.face(metric_.to_world(center(image) - center(root.box[0])));
     const double root_key = std::max(
-        {sides_[0].gaps.squared_distance(root.box[0], image),
-         sides_[1].gaps.squared_distance(sides_[0].to_other.hull(root.box[0]), root.box[1]),
-         nearest_.axes().squared_distance(extent_of(root, 0), extent_of(root, 1))});
-    if (nearby_ && root_key < nearest_.enough()) {
-      const Errc error = nearest_.begin_with(nearby_->first, nearby_->second);
+        root_distance, nearest_.axes().squared_distance(extent_of(root, 0), extent_of(root, 1)));
+    if (nearby && root_key < nearest_.enough()) {
+      const Errc error = nearest_.begin_with(nearby->first, nearby->second);
       if (error != Errc::kOk) return error;
     }
     if (!frontier_.push(root_key, nearest_.enough(), root)) return Errc::kInternal;
@@ -98,10 +96,7 @@ class DistanceWalk {
   // What is of one tree. Its boxes are compared in its own space with those of the other tree, and
   // moved in the other's.
   struct Side {
-    Side(const BoundTree& tree, const AffineMap& to_other_tree, const GapWeights& weights) noexcept
-        : codec{&tree}, to_other(to_other_tree), gaps(weights) {}
-
-    ErasedCodec codec;
+    const BoundTree& tree;
     const AffineMap& to_other;
     const GapWeights& gaps;
   };
@@ -159,7 +154,7 @@ class DistanceWalk {
     const Side& other = sides_[1 - s];
     const OtherSubtree subtree{entry.box[1 - s], other.to_other.hull(entry.box[1 - s]),
                                extent_of(entry, 1 - s)};
-    const Errc error = expand_with_gaps(*side.codec.tree, bound_, entry.ref[s], entry.box[s],
+    const Errc error = expand_with_gaps(side.tree, bound_, entry.ref[s], entry.box[s],
                                         {side.to_other, side.gaps, other.gaps, nearest_.axes(), s},
                                         subtree, children_, gaps_);
     return error != Errc::kOk ? error : queue_children(entry, s, key, subtree.extent);
@@ -234,14 +229,6 @@ class DistanceWalk {
     return Errc::kOk;
   }
 
-  [[nodiscard]] static Eigen::Vector3d center(const Box<double>& box) noexcept {
-    Eigen::Vector3d middle;
-    for (std::size_t k = 0; k < 3; ++k) {
-      middle[static_cast<Eigen::Index>(k)] = 0.5 * box.low[k] + 0.5 * box.high[k];
-    }
-    return middle;
-  }
-
   [[nodiscard]] static double extent(const Box<double>& box) noexcept {
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) sum += box.high[k] - box.low[k];
@@ -251,7 +238,6 @@ class DistanceWalk {
   std::array<Side, 2> sides_;
   const WorldMetric& metric_;
   const std::uint64_t node_budget_;
-  const std::optional<NearbyLeaves> nearby_;
   PairBound bound_;
   std::uint64_t visited_ = 0;
   bool is_spent_ = false;

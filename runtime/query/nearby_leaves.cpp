@@ -46,14 +46,6 @@ std::optional<Closest> closest_to(const BoundTree& tree, const Eigen::Vector3d& 
                  {first, std::min(kLeafFaces, tree.counts().faces_in_leaves - first)}};
 }
 
-Eigen::Vector3d center(const Box<double>& box) noexcept {
-  Eigen::Vector3d middle;
-  for (std::size_t k = 0; k < 3; ++k) {
-    middle[static_cast<Eigen::Index>(k)] = 0.5 * box.low[k] + 0.5 * box.high[k];
-  }
-  return middle;
-}
-
 }  // namespace
 
 std::optional<NearbyLeaves> nearby_leaves(const BoundTree& first, const BoundTree& second,

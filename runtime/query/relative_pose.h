@@ -101,6 +101,14 @@ class RelativePose {
   Eigen::Vector3d margin_;
 };
 
+[[nodiscard]] inline Eigen::Vector3d center(const Box<double>& box) noexcept {
+  Eigen::Vector3d middle;
+  for (std::size_t k = 0; k < 3; ++k) {
+    middle[static_cast<Eigen::Index>(k)] = 0.5 * box.low[k] + 0.5 * box.high[k];
+  }
+  return middle;
+}
+
 /// Whether two closed boxes share a point; exact.
 template <class S, class T>
 [[nodiscard]] bool boxes_overlap(const Box<S>& a, const Box<T>& b) noexcept {

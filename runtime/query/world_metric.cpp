@@ -159,6 +159,12 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
   return metric;
 }
 
+double WorldMetric::squared_distance(const Box<double>& first, const Box<double>& second,
+                                     const RelativePose& pose) const noexcept {
+  return std::max(in_first_.squared_distance(first, pose.to_first().hull(second)),
+                  in_second_.squared_distance(pose.to_second().hull(first), second));
+}
+
 // The axes U of the world give coordinates of z by the rows n of N = U G: lengths in the world,
 // since N G^-1 is U but for rounding, which weights_of() measures.
 //

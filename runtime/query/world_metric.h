@@ -95,6 +95,11 @@ class WorldMetric {
   /// The same in the second tree's space: of RelativePose::to_second().hull() and its own boxes.
   [[nodiscard]] const GapWeights& in_second() const noexcept { return in_second_; }
 
+  /// A lower bound of the squared distance of what two boxes hold, each in its tree's space, by
+  /// gaps in both spaces. `pose` is that of make().
+  [[nodiscard]] double squared_distance(const Box<double>& first, const Box<double>& second,
+                                        const RelativePose& pose) const noexcept;
+
   /// Axes of which the first is along a vector of the world, none if that has no direction. `pose`
   /// is that of make().
   [[nodiscard]] AlignedAxes axes_along(const Eigen::Vector3d& along,
