@@ -22,7 +22,6 @@
 #include "cooker/proof/scene_proof.h"
 #include "format/limits.h"
 #include "format/tree_record.h"
-#include "runtime/file/checksum.h"
 #include "runtime/file/open_file.h"
 #include "runtime/walk/traversal.h"
 
@@ -318,18 +317,6 @@ Findings verify_members(const File& pack, const std::optional<MeshArrays>& mesh)
   return findings;
 }
 
-// All of them, of which verify_checksums() tells the first.
-void add_damaged_sections(const File& file, Findings& findings) {
-  const auto& sections = OpenFile::of(file).container().sections;
-  for (std::size_t i = 0; i < sections.size() && findings.size() < kMaxFindings; ++i) {
-    const SectionEntry& entry = sections[i];
-    if (checksum(file.bytes().subspan(entry.offset, entry.size)) == entry.checksum) continue;
-    findings.push_back(
-        {Errc::kChecksumMismatch,
-         fmt::format("section {} ({}): checksum differs", i, section_name(entry.kind))});
-  }
-}
-
 }  // namespace
 
 std::string fault_of_node(std::uint32_t node, NodeState state) {
@@ -351,7 +338,11 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
   if (Status status = check_padding(file.bytes(), OpenFile::of(file).container()); !status) {
     findings.push_back(status.error());
   }
-  add_damaged_sections(file, findings);
+  for (std::size_t section = 0; findings.size() < kMaxFindings; ++section) {
+    const Status status = OpenFile::of(file).verify_checksums(section);
+    if (status) break;  // of all that are left
+    findings.push_back(status.error());
+  }
   if (file.is_pack()) {
     for (Error& finding : verify_members(file, mesh)) findings.push_back(std::move(finding));
     return findings;

@@ -79,7 +79,8 @@ Result<std::uint32_t> File::find_tree(std::string_view name) const {
 }
 
 Status verify_checksums(const File& file) {
-  return OpenFile::of(file).verify_checksums();
+  std::size_t first = 0;
+  return OpenFile::of(file).verify_checksums(first);
 }
 
 }  // namespace boxtree

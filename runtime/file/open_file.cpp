@@ -52,7 +52,8 @@ Result<File> OpenFile::check(Owner file, const OpenOptions& options, std::uint32
   }
   file->tree_count_ = static_cast<std::uint32_t>(table->size / record_bytes);
   if (options.verify_checksums) {
-    if (Status status = file->verify_checksums(); !status) return status.error();
+    std::size_t first = 0;
+    if (Status status = file->verify_checksums(first); !status) return status.error();
   }
   return File(std::move(file));
 }
@@ -106,12 +107,12 @@ Bytes OpenFile::section(SectionKind kind, std::uint32_t owner) const noexcept {
   return entry == nullptr ? Bytes{} : bytes_.subspan(entry->offset, entry->size);
 }
 
-Status OpenFile::verify_checksums() const {
-  for (std::size_t i = 0; i < container_.sections.size(); ++i) {
-    const SectionEntry& entry = container_.sections[i];
+Status OpenFile::verify_checksums(std::size_t& section) const {
+  for (; section < container_.sections.size(); ++section) {
+    const SectionEntry& entry = container_.sections[section];
     if (checksum(bytes_.subspan(entry.offset, entry.size)) != entry.checksum) {
       return error_at(
-          error_with(Errc::kChecksumMismatch, {}, "section # (", {i}).detail,
+          error_with(Errc::kChecksumMismatch, {}, "section # (", {section}).detail,
           error_with(Errc::kChecksumMismatch, section_name(entry.kind), "): checksum differs"));
     }
   }

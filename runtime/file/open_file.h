@@ -55,8 +55,9 @@ class OpenFile {
   /// Bytes of a section; empty when the file has none of that kind and owner.
   [[nodiscard]] Bytes section(SectionKind kind, std::uint32_t owner = kNoOwner) const noexcept;
 
-  /// Whether the bytes of every section have the checksum of the section table.
-  [[nodiscard]] Status verify_checksums() const;
+  /// Whether the bytes of every section, from number `section` on, have the checksum of the section
+  /// table. If not, `section` is the first that has another.
+  [[nodiscard]] Status verify_checksums(std::size_t& section) const;
 
  private:
   using Owner = std::unique_ptr<OpenFile, File::Ends>;
