@@ -109,11 +109,7 @@ std::string costs_to_json(const Calibration& calibration) {
 }
 
 std::string disturbed_constants(const Calibration& calibration) {
-  const std::string why = calibration.timed_work.disturbance();
-  if (why.empty()) return {};
-  return why +
-         ", so constants may be wrong, and what is chosen by them: measure again when the "
-         "machine, and its host, do nothing else";
+  return calibration.timed_work.warning("constants may be wrong, and what is chosen by them");
 }
 
 Result<Calibration> parse_costs(std::string_view text) {

@@ -84,4 +84,10 @@ std::string TimedWork::disturbance() const {
                    100 * (speed_ratio() - 1));
 }
 
+std::string TimedWork::warning(const std::string& what_follows) const {
+  if (!is_disturbed()) return {};
+  return fmt::format("{}, so {}: measure again when the machine, and its host, do nothing else",
+                     disturbance(), what_follows);
+}
+
 }  // namespace boxtree::cooker

@@ -49,6 +49,9 @@ class TimedWork {
   [[nodiscard]] bool is_disturbed() const noexcept;
   /// What disturbed it, as the first half of a sentence; empty if nothing did.
   [[nodiscard]] std::string disturbance() const;
+  /// A warning of it, of what follows ("times may be wrong"), and of what to do; empty if nothing
+  /// did.
+  [[nodiscard]] std::string warning(const std::string& what_follows) const;
 
  private:
   void add_piece();

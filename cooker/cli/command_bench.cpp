@@ -296,10 +296,8 @@ int run(const BenchArguments& arguments) {
     }
     print(document);
   }
-  if (const std::string why = timed_work.disturbance(); !why.empty()) {
-    warn(why +
-         ", so times may be wrong: measure again when the machine, and its host, do nothing else");
-  }
+  if (const std::string warning = timed_work.warning("times may be wrong"); !warning.empty())
+    warn(warning);
   return 0;
 }
 
