@@ -4,6 +4,7 @@
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/query/distance_query.h"
 #include "runtime/query/distance_walk.h"
 #include "runtime/query/invalid_query.h"
 
@@ -18,15 +19,13 @@ struct Placed {
   const WorldMetric& metric;
 };
 
-Distance answer(const Placed& placed, const DistanceWalk& walk,
-                const Approximation& approximation) {
+Distance answer(const Placed& placed, const DistanceWalk& walk) {
   Distance result;
   result.nodes_expanded = walk.visited();
   result.converged = !walk.is_spent();
   result.lower = placed.metric.length_below(walk.lower());
   const NearestPair& nearest = walk.nearest();
-  const bool is_within = walk.lower() <= approximation.max_distance;
-  if (is_within && nearest.upper < std::numeric_limits<double>::infinity()) {
+  if (walk.has_found()) {
     result.upper = placed.metric.length_above(nearest.upper);
     const Eigen::Vector3d origin =
         product(placed.first_pose.linear(), placed.first.frame().to_object(nearest.origin)) +
@@ -49,17 +48,22 @@ Distance answer(const Placed& placed, const DistanceWalk& walk,
                                           const std::optional<NearbyLeaves>& nearby) {
   DistanceWalk walk(placed.first, placed.second, placed.pose, placed.metric, approximation);
   if (const Errc error = walk.run(root_distance, nearby); error != Errc::kOk) return error;
-  return answer(placed, walk, approximation);
+  return answer(placed, walk);
 }
 
 }  // namespace
 
-Result<Distance> distance(const Tree& first_tree, const Pose& first_pose, const Tree& second_tree,
+Result<Distance> distance(const Tree& first, const Pose& first_pose, const Tree& second,
                           const Pose& second_pose, const DistanceOptions& options) {
   const DefaultFloatState state;
-  const BoundTree& first = BoundTree::of(first_tree);
-  const BoundTree& second = BoundTree::of(second_tree);
   if (const char* field = invalid_field(options)) return invalid_query(field);
+  return distance_of_trees(BoundTree::of(first), first_pose, BoundTree::of(second), second_pose,
+                           options);
+}
+
+Result<Distance> distance_of_trees(const BoundTree& first, const Pose& first_pose,
+                                   const BoundTree& second, const Pose& second_pose,
+                                   const DistanceOptions& options) {
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;

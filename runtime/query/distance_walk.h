@@ -84,6 +84,8 @@ class DistanceWalk {
   }
 
   [[nodiscard]] const NearestPair& nearest() const noexcept { return nearest_.pair(); }
+  /// Whether there is one, within the maximal distance.
+  [[nodiscard]] bool has_found() const noexcept { return nearest_.is_within(); }
   [[nodiscard]] std::uint64_t visited() const noexcept { return visited_; }
   [[nodiscard]] bool is_spent() const noexcept { return is_spent_; }
   /// The lower bound of the distance.

@@ -52,9 +52,12 @@ double NearestTriangles::best_to_improve(double rounding) const noexcept {
   return std::max(pair_.upper - rounding, pair_.upper / 2);
 }
 
+// An allowed error may skip what could be nearer than the pair so far, but not what could be within
+// the maximal distance if that pair is not.
 void NearestTriangles::set_enough() noexcept {
   const double best = best_to_improve(rounding_);
-  const double enough = std::min(converged_beyond(approximation_, pair_.upper), best);
+  const double enough =
+      is_within() ? std::min(converged_beyond(approximation_, pair_.upper), best) : best;
   // The next double above: pairs exactly at the maximal distance count.
   const double most = std::nextafter(approximation_.max_distance * approximation_.max_distance,
                                      std::numeric_limits<double>::infinity());
@@ -111,8 +114,8 @@ Errc NearestTriangles::begin_with(NodeRef first, NodeRef second) noexcept {
   if (const Errc error = compare(first, second, 0); error != Errc::kOk) return error;
   left_ = pair_.lower = std::numeric_limits<double>::infinity();
   in_vain_ = 0;
-  if (pair_.upper <= approximation_.max_distance) return Errc::kOk;
-  pair_ = NearestPair();
+  if (is_within()) return Errc::kOk;
+  pair_.upper = pair_.least = std::numeric_limits<double>::infinity();
   rounding_ = 0;
   axes_ = axes;
   set_enough();
@@ -162,6 +165,7 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
   if (!(found.upper < pair_.upper)) return;
   if (found.upper < pair_.upper - rounding_) in_vain_ = 0;
   pair_.upper = found.upper;
+  pair_.least = found.lower;
   rounding_ = kRounding * size;
   between_ = separating_direction(found.second - found.first, p_world, q_world, size);
   pair_.faces = {face_ref(first_, leaves_.first.face[i]),

@@ -29,6 +29,7 @@ namespace boxtree {
 struct NearestPair {
   double lower = std::numeric_limits<double>::infinity();  // of all triangles compared
   double upper = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity();  // these are at least that far apart
   FacePair faces{};
   Eigen::Vector3d origin;  // first tree's space; the points are differences from here
   Eigen::Vector3d first;
@@ -91,6 +92,10 @@ class NearestTriangles {
 
   [[nodiscard]] bool has_any() const noexcept {
     return pair_.upper != std::numeric_limits<double>::infinity();
+  }
+  /// Whether it is within the maximal distance, to within rounding.
+  [[nodiscard]] bool is_within() const noexcept {
+    return has_any() && pair_.least <= approximation_.max_distance;
   }
   [[nodiscard]] const NearestPair& pair() const noexcept { return pair_; }
 

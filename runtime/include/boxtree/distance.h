@@ -32,8 +32,9 @@ struct Distance {
   double lower = 0;
   /// The surfaces are at most this far apart, likewise.
   double upper = std::numeric_limits<double>::infinity();
-  /// What is `upper` apart; nothing if no triangles were met, or if all are known to be beyond the
-  /// maximal distance. Points far from the world's origin are rounded more coarsely than `upper`
+  /// What is `upper` apart; nothing if no triangles were met, or none within the maximal distance:
+  /// whether there are any is decided to within rounding, whatever error is allowed, unless the
+  /// budget runs out. Points far from the world's origin are rounded more coarsely than `upper`
   /// is.
   std::optional<DistanceWitness> witness;
   /// Whether the bounds are as near to each other as was required, or as rounding lets them be:

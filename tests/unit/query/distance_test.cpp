@@ -293,6 +293,37 @@ TEST_P(Distances, NothingBeyondTheMaximalDistance) {
   EXPECT_LT(limited_nodes, all_nodes);
 }
 
+// Neither an allowed error nor a budget makes what is farther away count, and an error hides
+// nothing that is not.
+TEST_P(Distances, WhatIsFoundIsWithinTheMaximalDistanceWhateverIsAllowed) {
+  for_each_case(3, [&](const SourceMesh&, const Tree& first, const Pose& first_pose,
+                       const SourceMesh&, const Tree& second, const Pose& second_pose) {
+    const auto all = distance(first, first_pose, second, second_pose);
+    if (all->lower == 0) return;
+    for (const double factor : {0.7, 0.95, 0.999, 1.001, 1.05, 1.4}) {
+      SCOPED_TRACE(factor);
+      const double most = factor * all->upper;
+      for (const double share : {0.01, 0.1, 0.5}) {
+        for (const DistanceOptions& options :
+             {DistanceOptions{.relative_error = share, .max_distance = most},
+              DistanceOptions{.absolute_error = share * all->upper, .max_distance = most}}) {
+          const auto found = distance(first, first_pose, second, second_pose, options);
+          ASSERT_TRUE(found->converged);
+          ASSERT_EQ(found->witness.has_value(), factor > 1);
+          ASSERT_LE(found->lower, all->upper);
+          ASSERT_EQ(found->upper <= most, factor > 1);
+          if (factor < 1) ASSERT_GE(found->lower, most * (1 - 1e-12));
+        }
+      }
+      for (const std::uint64_t budget : {0, 1, 10, 100}) {
+        const auto found = distance(first, first_pose, second, second_pose,
+                                    {.max_distance = most, .node_budget = budget});
+        ASSERT_EQ(found->witness.has_value(), found->upper <= most);
+      }
+    }
+  });
+}
+
 // Only the relation of the two poses counts, also a thousand kilometres away and with trees of
 // different codecs; and the distance is the same from either side.
 TEST_P(Distances, DependsOnTheRelativePoseAlone) {
