@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <random>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,21 @@ std::vector<fs::path> paths_of(const JobKey& key) {
   return paths;
 }
 
+// An output that is older than what it is made of is out of date for make and ninja, whatever its
+// bytes, and at each build again: one that is right gets the time of now, as if it had been cooked.
+// Of a file system without times, or a file of another user, it does not.
+void renew_time(const fs::path& output, const std::vector<fs::path>& read) {
+  std::error_code unknown;
+  const fs::file_time_type made = fs::last_write_time(output, unknown);
+  if (unknown) return;
+  const bool is_older = std::any_of(read.begin(), read.end(), [&](const fs::path& path) {
+    std::error_code error;
+    const fs::file_time_type changed = fs::last_write_time(path, error);
+    return !error && changed > made;
+  });
+  if (is_older) fs::last_write_time(output, fs::file_time_type::clock::now(), unknown);
+}
+
 class KeyedCook {
  public:
   KeyedCook(const CookJob& job, const JobKey& key, const KeyedStores& stores,
@@ -45,6 +61,7 @@ class KeyedCook {
         KeyedOutcome outcome;
         outcome.how = KeyedOutcome::How::kThere;
         outcome.bytes = there->bytes;
+        renew_time(job_.output, read);
         return with_depfile(read, std::move(outcome));
       }
     }
@@ -57,6 +74,7 @@ class KeyedCook {
     outcome.how = KeyedOutcome::How::kFromCache;
     outcome.bytes = (*hit)->bytes;
     outcome.report = std::move((*hit)->report);
+    renew_time(job_.output, read);
     if (Status status = note((*hit)->output, outcome.bytes); !status) return status.error();
     return with_depfile(read, std::move(outcome));
   }

@@ -49,6 +49,7 @@ struct KeyedOutcome {
 [[nodiscard]] bool has_keyed_output(const CookJob& job);
 
 /// Makes the output of a job, and its depfile, from the journal, from the cache or by cooking it.
+/// An output that is there and right, but older than a file that it is made of, gets a new time.
 /// Kept under the key are only bytes of files that did not change while they were cooked, and that
 /// the key names: after a cook the key is computed anew. Safe for several threads with different
 /// outputs. Precondition: has_keyed_output(job), and `key` is what key_of(job) has just returned.

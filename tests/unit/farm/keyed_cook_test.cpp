@@ -2,6 +2,7 @@
 // Outputs come from the journal, the cache or a cook, and are always those of the key.
 #include "cooker/farm/keyed_cook.h"
 
+#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
@@ -93,6 +94,29 @@ TEST(KeyedCook, TheDepfileIsThatOfACook) {
     if (how == How::kFromCache) fs::remove(farm.job.output);
     EXPECT_EQ(require(farm.cook()).how, how);
     EXPECT_EQ(test::read_text(farm.job.depfile), depfile);
+  }
+}
+
+// Else make and ninja would cook it at each build again, once an input was written anew.
+TEST(KeyedCook, WhatIsThereIsMadeNewerThanItsInputs) {
+  Farm farm;
+  for (const bool has_journal : {false, true}) {
+    SCOPED_TRACE(has_journal);
+    if (!has_journal) farm.stores.journal = nullptr;
+    ASSERT_TRUE(farm.cook());
+    const fs::file_time_type cooked = fs::last_write_time(farm.job.output);
+    // Neither input is newer: it stays as it is.
+    ASSERT_TRUE(farm.cook());
+    EXPECT_EQ(fs::last_write_time(farm.job.output), cooked);
+    for (const char* input : {"m.obj", "m.mtl"}) {
+      const fs::file_time_type now = fs::file_time_type::clock::now();
+      fs::last_write_time(farm.job.output, now - std::chrono::hours(2));
+      fs::last_write_time(farm.folder.path() / input, now - std::chrono::hours(1));
+      const KeyedOutcome outcome = require(farm.cook());
+      EXPECT_EQ(outcome.how, has_journal ? How::kThere : How::kFromCache);
+      EXPECT_GE(fs::last_write_time(farm.job.output), now - std::chrono::minutes(1));
+    }
+    farm.stores.journal = &farm.journal;
   }
 }
 
