@@ -474,6 +474,14 @@ std::vector<OptionText> positionals_of(const Command& command) {
   return texts;
 }
 
+bool can_end_with(const Command& command, const ExitStatus& status) {
+  if (status.number != kExitDifference || command.parent() == nullptr) return true;
+  const std::vector<OptionText> options = options_of(command);
+  return std::any_of(options.begin(), options.end(), [](const OptionText& option) {
+    return option.names == std::vector<std::string>{"--audit"};
+  });
+}
+
 std::vector<OptionText> options_of(const Command& command) {
   std::vector<OptionText> texts;
   for (const CLI::Option* option : command.app().get_options()) {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "cooker/cli/exit_status.h"
+
 namespace CLI {
 class Option;
 }  // namespace CLI
@@ -227,6 +229,9 @@ struct OptionText {
 [[nodiscard]] std::vector<OptionText> positionals_of(const Command& command);
 /// Options of the command alone, common ones first.
 [[nodiscard]] std::vector<OptionText> options_of(const Command& command);
+/// Whether the command, or one of the program's, may end with that status: only those that audit a
+/// cache find differences.
+[[nodiscard]] bool can_end_with(const Command& command, const ExitStatus& status);
 
 /// "boxtree query FILE ray": how the command is called.
 [[nodiscard]] std::string call_of(const Command& command);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -196,8 +197,10 @@ int run_calibration(const BenchArguments& arguments) {
     imported->mesh.name = path.stem().string();
     meshes.push_back(std::move(imported->mesh));
   }
+  std::set<std::size_t> sizes;
+  for (const SourceMesh& mesh : meshes) sizes.insert(mesh.faces.size());
   constexpr std::size_t kEnough = 3;
-  if (meshes.size() < kEnough) {
+  if (sizes.size() < kEnough) {
     warn(
         fmt::format("constants of so few meshes hold for their like alone: give {} or more, of "
                     "different sizes",

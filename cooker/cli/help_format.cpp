@@ -93,6 +93,7 @@ std::string HelpFormatter::make_footer(const CLI::App* app) const {
   if (!command.examples().empty()) footer += "\n";
   std::string statuses;
   for (const ExitStatus& status : kExitStatuses) {
+    if (!can_end_with(command, status)) continue;
     statuses += (statuses.empty() ? "" : ", ") + std::to_string(status.number) + " " + status.name;
   }
   footer += wrapped("Exit status: " + statuses + ".", 0, 0) + "\n";

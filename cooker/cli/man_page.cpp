@@ -107,9 +107,10 @@ std::string joined(const std::vector<std::string>& paragraphs) {
   return text;
 }
 
-std::string statuses() {
+std::string statuses(const Command& command) {
   std::string text;
   for (const ExitStatus& status : kExitStatuses) {
+    if (!can_end_with(command, status)) continue;
     text += ".TP\n" + bold(std::to_string(status.number)) + "\n" + line_of_text(status.meaning);
   }
   return text + ".PP\n" + line_of_text(kOtherStatuses);
@@ -147,7 +148,7 @@ std::string page_of_program(const Command& program) {
     text += ".TP\n" + bold(page_name(*command)) + "(1)\n" + line_of_text(command->summary() + ".");
     if (!command->examples().empty()) examples.push_back(example_text(command->examples().front()));
   }
-  return text + section("EXIT STATUS") + statuses() + section("EXAMPLES") + joined(examples);
+  return text + section("EXIT STATUS") + statuses(program) + section("EXAMPLES") + joined(examples);
 }
 
 std::string page_of_command(const Command& command) {
@@ -158,7 +159,7 @@ std::string page_of_command(const Command& command) {
                      section("OPTIONS") + list(positionals_of(command)) + list(options_of(command));
   if (!command.commands().empty()) text += section("KINDS");
   for (const Command* kind : command.commands()) text += kind_section(*kind);
-  text += section("EXIT STATUS") + statuses();
+  text += section("EXIT STATUS") + statuses(command);
   std::vector<std::string> examples;
   add_examples(command, examples);
   return examples.empty() ? text : text + section("EXAMPLES") + joined(examples);

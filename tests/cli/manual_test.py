@@ -150,6 +150,9 @@ def check_pages(manual):
         statuses = page[page.index(".SH EXIT STATUS"):]
         if "127, and 134" not in statuses:
             sys.exit(f"{name}.1: nothing of the statuses of the system")
+        audits = not command or any("--audit" in option for option in manual.options_in_help(command))
+        if ("\n\\fB7\\fR\n" in statuses) != audits:
+            sys.exit(f"{name}.1: status 7 is for those that audit a cache")
         others = set(re.findall(r"^\\fB(.*)\\fR\(1\),?$", page[page.index(".SH SEE ALSO"):], re.MULTILINE))
         expect(f"{name}.1, see also", {other.replace("\\-", "-") for other in others}, names - {name})
         run(["groff", "-man", "-ww", "-Tutf8", "-z"], input=page)
