@@ -117,8 +117,9 @@ class Encoder {
       if (!equations) return equations.error();
       // More room with each seed, so that one will do.
       const std::size_t count = equations->size();
-      const std::size_t spare = (count >> 8) * (std::bit_width(count) + 2 * header_.seed) +
-                                std::size_t{32} * header_.seed;
+      const std::size_t spare =
+          (count >> 8) * (static_cast<std::size_t>(std::bit_width(count)) + 2 * header_.seed) +
+          std::size_t{32} * header_.seed;
       header_.start_count = static_cast<std::uint32_t>(count + spare + 1);
       if (auto solved = solve(*equations, header_.start_count)) {
         bits = std::move(*solved);

@@ -53,7 +53,7 @@ class Difference {
     // face that is not against the direction grows, too: what is behind it may be against it.
     while (true) {
       const std::size_t nearest = nearest_face();
-      if (nearest == count_) break;
+      if (nearest >= count_) break;
       Face& face = faces_[nearest];
       const bool counts = is_against(face.normal, against);
       const Vertex beyond = farthest(face.normal);

@@ -21,7 +21,7 @@
 namespace boxtree {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Each step at least halves what is left where the shape grazes the triangle, and squares it
 // elsewhere: after so many nothing that double resolves is left.
@@ -68,7 +68,7 @@ struct Line {
     const Projection on = project(v, shape, corner);
     double end = on.half;
     if (shape.hull != nullptr) {
-      end = -kInfinity;
+      end = -kInfinite;
       for (const Eigen::Vector3d& point : shape.hull->point) end = std::max(end, dot(v, point));
     }
     gap = on.low - end - shape.radius * length - size * (kProjectionError * largest + moving.doubt);
@@ -144,9 +144,9 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
   double s = from;
   const double estimate =
       moving.direction.isZero(0)
-          ? kInfinity
+          ? kInfinite
           : estimated_touch(moving.shape, moving.direction, placed(moving, triangle, from));
-  if (estimate < kInfinity) {
+  if (estimate < kInfinite) {
     const Approach look(moving, triangle, from + estimate);
     const Line line = look.line(moving);
     if (line.is_direction() && line.slowest() > 0) {
@@ -218,7 +218,7 @@ class BoxOnItsWay {
         direction_(in_frame_of(moving.shape, moving.direction)) {}
 
   // Ends early where first_touch() is nothing.
-  [[gnu::noinline]] void try_all(double from = 0, double to = kInfinity) noexcept {
+  [[gnu::noinline]] void try_all(double from = 0, double to = kInfinite) noexcept {
     axes_.visit([&](const BoxAxis& axis) {
       try_axis(axis);
       return axis.is_more_to_come || first_touch(from, to).has_value();
@@ -239,11 +239,11 @@ class BoxOnItsWay {
   [[nodiscard]] double error() const noexcept { return error_; }
 
   double enter = 0;          // they do not touch before
-  double leave = kInfinity;  // nor after
+  double leave = kInfinite;  // nor after
   double enter_by = 0;       // they touch by then, if at all
   // Of the axes along which they come nearer, that along which they overlap least: by how much, or
   // less than 0 where it is a gap. Of equal ones those of the box, then the normal of the face.
-  double overlap = kInfinity;
+  double overlap = kInfinite;
 
  private:
   // How far speeds along a unit vector are off.
@@ -270,7 +270,7 @@ class BoxOnItsWay {
     }
     if (first > error_) {  // ahead
       enter = std::max(enter, (first - error_) / (speed + kSpeedError));
-      enter_by = std::max(enter_by, slowest > 0 ? (first + error_) / slowest : kInfinity);
+      enter_by = std::max(enter_by, slowest > 0 ? (first + error_) / slowest : kInfinite);
     } else if (first > -error_ && slowest > 0) {
       enter_by = std::max(enter_by, (first + error_) / slowest);
     }
@@ -344,7 +344,7 @@ double certain_by(const MovingShape& moving, const Triangle& triangle, double s,
   const bool is_core = moving.shape.hull != nullptr || radius <= 8 * doubt;
   const double way = longest_length(moving.direction);
   double by = s, step = 0;
-  double passed = kInfinity;  // a step after which it is apart again
+  double passed = kInfinite;  // a step after which it is apart again
   for (int n = 0; n < kMostSteps; ++n) {
     const double missing = at.upper + doubt - radius;
     // Rounding tilts the line between points that are near each other, but no normal.

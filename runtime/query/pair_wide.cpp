@@ -203,8 +203,9 @@ class WidePairWalk {
     return for_each_bit(near & ~to.links.inner_mask, [&](std::uint32_t i) {
       const NodeRef child = leaf_of(first_face(to.links, i), codec);
       const NodeRef other = leaf_of(to.other->number, *codec_[1 - to.side]);
-      const Errc error = to.side == 0 ? bound_.compare(child, other) : bound_.compare(other, child);
-      if (error != Errc::kOk) return fail(error);
+      const Errc compared =
+          to.side == 0 ? bound_.compare(child, other) : bound_.compare(other, child);
+      if (compared != Errc::kOk) return fail(compared);
       return to.side == 0 ? leaves_.visit(child, to.boxes.box(i), other)
                           : leaves_.visit(other, to.other->box(), child);
     });

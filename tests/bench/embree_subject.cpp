@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Embree 3, single-threaded, default and compact scenes.
+// Embree 3 or 4, single-threaded, default and compact scenes.
 #include <algorithm>
 #include <cmath>
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <limits>
 
 #include "runtime/primitive/predicates.h"
@@ -10,6 +14,26 @@
 
 namespace boxtree::bench {
 namespace {
+
+#if RTC_VERSION_MAJOR >= 4
+void intersect(RTCScene scene, RTCRayHit& query) {
+  rtcIntersect1(scene, &query);
+}
+void intersect(const int* valid, RTCScene scene, RTCRayHit8& query) {
+  rtcIntersect8(valid, scene, &query);
+}
+#else
+void intersect(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+}
+void intersect(const int* valid, RTCScene scene, RTCRayHit8& query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect8(valid, scene, &context, &query);
+}
+#endif
 
 class EmbreeSubject : public Subject {
  public:
@@ -50,8 +74,6 @@ class EmbreeSubject : public Subject {
   }
   bool rays(std::span<const Ray> rays, std::span<double> out) override {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
       RTCRayHit query{};
       const Eigen::Vector3f origin = rays[i].origin.cast<float>();
       const Eigen::Vector3f direction = rays[i].direction.cast<float>();
@@ -64,7 +86,7 @@ class EmbreeSubject : public Subject {
       query.ray.tfar = static_cast<float>(rays[i].t_max);
       query.ray.mask = ~0u;
       query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene_, &context, &query);
+      intersect(scene_, query);
       out[i] = query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
                                                            : double{query.ray.tfar};
     }
@@ -76,8 +98,6 @@ class EmbreeSubject : public Subject {
     constexpr std::size_t kWidth = 8;
     for (std::size_t first = 0; first < rays.size(); first += kWidth) {
       const std::size_t count = std::min(kWidth, rays.size() - first);
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
       RTCRayHit8 query{};
       alignas(32) int valid[kWidth] = {};
       for (std::size_t i = 0; i < count; ++i) {
@@ -94,7 +114,7 @@ class EmbreeSubject : public Subject {
         query.ray.mask[i] = ~0u;
         query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       }
-      rtcIntersect8(valid, scene_, &context, &query);
+      intersect(valid, scene_, query);
       for (std::size_t i = 0; i < count; ++i) {
         out[first + i] = query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
                              ? std::numeric_limits<double>::infinity()
