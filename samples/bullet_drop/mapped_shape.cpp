@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Gives Bullet the triangles near each moving body, found by a box query.
-#include "samples/bullet_drop/mapped_shape.h"
+#include "mapped_shape.h"
 
 #include <LinearMath/btAabbUtil2.h>
 #include <algorithm>
