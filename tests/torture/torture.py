@@ -429,13 +429,13 @@ def cases_of(torture, writers, is_full):
 
     more = STARTS if is_full else STARTS[:4]
     for start in more:
-        yield from some(torture.call_faults(cook, start), 40, f"calls {start.name}")
-        yield from some(torture.lasting_faults(cook, start), 8, f"lasting {start.name}")
-        yield from some(torture.signals_at_calls(cook, start), 12, f"signals {start.name}")
+        yield from some(torture.call_faults(cook, start), 24, f"calls {start.name}")
+        yield from some(torture.lasting_faults(cook, start), 6, f"lasting {start.name}")
+        yield from some(torture.signals_at_calls(cook, start), 8, f"signals {start.name}")
         yield from torture.random_kills(cook, start, 200 if is_full else 4, moments)
     for start in STARTS:
         yield from torture.power_cuts(cook, start)
-    yield from some(torture.allocation_faults(writers["cook-ply"], OVER_OLD), 40, "allocations")
+    yield from some(torture.allocation_faults(writers["cook-ply"], OVER_OLD), 24, "allocations")
     yield from some(torture.limits(cook, OVER_OLD), 20, "limits")
     pairs = [STARTS[1], STARTS[2], STARTS[3]]
     for start in STARTS if is_full else pairs:
