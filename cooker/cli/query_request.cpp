@@ -155,15 +155,6 @@ void add_closest(const Tree& tree, Json& json, const std::optional<ClosestPoint>
   json["triangle"] = closest->triangle;
 }
 
-// What is known, for any answer with bounds. An infinite upper bound is null: JSON has no infinity.
-template <class Bounded>
-Json bounds_json(const Bounded& bounds) {
-  return {{"lower", bounds.lower},
-          {"upper", bounds.upper},
-          {"converged", bounds.converged},
-          {"nodes", bounds.nodes_expanded}};
-}
-
 Result<Json> answer(const Tree& tree, const PointRequest& request) {
   if (request.with_bounds) {
     const auto found = closest_point(tree, request.at, request.options);
@@ -209,14 +200,8 @@ Result<Json> answer_pair(const Tree& first, const Tree& second, const DistanceRe
   const auto found =
       distance(first, Pose::Identity(), second, request.second.pose, request.options);
   if (!found) return found.error();
-  Json json = bounds_json(*found);
-  json["found"] = found->witness.has_value();
-  if (found->witness) {
-    const DistanceWitness& witness = *found->witness;
-    json["faces"] = listed_faces(first, second, witness.faces);
-    json["points"] = {to_json(witness.first), to_json(witness.second)};
-  }
-  return json;
+  return distance_json(*found,
+                       [&](const FacePair& faces) { return listed_faces(first, second, faces); });
 }
 
 Result<Json> answer_pair(const Tree& first, const Tree& second, const OverlapRequest& request) {

@@ -282,7 +282,7 @@ struct PairRequest {
 
 struct DistanceRequest {
   static constexpr const char* kKind = "distance";
-  static constexpr const char* kHelp = "Distance of two trees";
+  static constexpr const char* kHelp = "Distance of two trees, or of a scene from a tree";
   static constexpr KindExample kExamples[] = {
       {"How far two trees are apart", "boxtree query bunny.bxt distance bunny.bxt --pose 5,0,0"},
       {"Whether they are closer than 0.1: found says it",
@@ -337,6 +337,28 @@ struct ContactsRequest {
 
 /// What the JSON of a contact of two triangles has besides their faces.
 [[nodiscard]] Json contact_json(const PairContact& contact);
+
+/// What is known, for any answer with bounds. An infinite upper bound is null: JSON has no
+/// infinity.
+template <class Bounded>
+[[nodiscard]] Json bounds_json(const Bounded& bounds) {
+  return {{"lower", bounds.lower},
+          {"upper", bounds.upper},
+          {"converged", bounds.converged},
+          {"nodes", bounds.nodes_expanded}};
+}
+
+/// A distance of trees or from a scene; `faces` makes the list of the two faces of its witness.
+template <class AnyDistance, class Faces>
+[[nodiscard]] Json distance_json(const AnyDistance& found, const Faces& faces) {
+  Json json = bounds_json(found);
+  json["found"] = found.witness.has_value();
+  if (found.witness) {
+    json["faces"] = faces(found.witness->faces);
+    json["points"] = {to_json(found.witness->first), to_json(found.witness->second)};
+  }
+  return json;
+}
 
 /// A kind that is here is one of batches and of the command line, without another line of theirs.
 using QueryRequest =

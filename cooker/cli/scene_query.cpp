@@ -208,8 +208,11 @@ Result<Json> answer_pair(const Scene& scene, LayerMask layers, const Tree& secon
     return overlap_pairs(scene, second, request.second.pose, visitor, layers);
   });
 }
-Result<Json> answer_pair(const Scene&, LayerMask, const Tree&, const DistanceRequest&) {
-  return not_for_scenes("a distance");
+Result<Json> answer_pair(const Scene& scene, LayerMask layers, const Tree& second,
+                         const DistanceRequest& request) {
+  const auto found = distance(scene, second, request.second.pose, layers, request.options);
+  if (!found) return found.error();
+  return distance_json(*found, [&](const ScenePair& faces) { return pair_json(scene, faces); });
 }
 Result<Json> answer_pair(const Scene&, LayerMask, const Tree&, const OverlapRequest&) {
   return not_for_scenes("whether two trees touch within a distance");

@@ -149,6 +149,41 @@ bxt_status bxt_tree_pair_contacts(const bxt_tree* first, const bxt_pose* first_p
   });
 }
 
+namespace {
+
+// `query(options)` is a Distance or a SceneDistance.
+template <class Query>
+bxt_status find_distance(const bxt_approximation* options, bxt_distance* distance, bxt_error* error,
+                         Query query) {
+  if (!has_size(distance)) return refuse(error, "distance: struct_size");
+  return guarded(error, [&] {
+    return with_approximation(options, error, [&](const DistanceOptions& read) {
+      const auto found = query(read);
+      if (!found) return finish(found, error);
+      bxt_distance shown = {.struct_size = 0,
+                            .converged = found->converged,
+                            .is_found = found->witness.has_value(),
+                            .lower = found->lower,
+                            .upper = found->upper,
+                            .first = to_c(FaceRef{}),
+                            .second = to_c(FaceRef{}),
+                            .first_point = {},
+                            .second_point = {},
+                            .nodes_expanded = found->nodes_expanded};
+      if (found->witness) {
+        shown.first = face_of(found->witness->faces.first);
+        shown.second = face_of(found->witness->faces.second);
+        shown.first_point = to_c(found->witness->first);
+        shown.second_point = to_c(found->witness->second);
+      }
+      write_struct(distance, shown);
+      return finish(found, error);
+    });
+  });
+}
+
+}  // namespace
+
 bxt_status bxt_tree_distance(const bxt_tree* first, const bxt_pose* first_pose,
                              const bxt_tree* second, const bxt_pose* second_pose,
                              const bxt_approximation* options, bxt_distance* distance,
@@ -156,26 +191,31 @@ bxt_status bxt_tree_distance(const bxt_tree* first, const bxt_pose* first_pose,
   if (const char* name = first_null("first", first, "second", second, "distance", distance)) {
     return refuse_null(error, name);
   }
-  if (!has_size(distance)) return refuse(error, "distance: struct_size");
-  return guarded(error, [&] {
-    return with_approximation(options, error, [&](const DistanceOptions& read) {
-      const Result<Distance> found = boxtree::distance(first->inside, to_cpp(first_pose),
-                                                       second->inside, to_cpp(second_pose), read);
-      if (found) {
-        const DistanceWitness none{{}, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-        const DistanceWitness witness = found->witness.value_or(none);
-        write_struct(distance, {.converged = found->converged,
-                                .is_found = found->witness.has_value(),
-                                .lower = found->lower,
-                                .upper = found->upper,
-                                .first = to_c(witness.faces.first),
-                                .second = to_c(witness.faces.second),
-                                .first_point = to_c(witness.first),
-                                .second_point = to_c(witness.second),
-                                .nodes_expanded = found->nodes_expanded});
-      }
-      return finish(found, error);
-    });
+  return find_distance(options, distance, error, [&](const DistanceOptions& read) {
+    return boxtree::distance(first->inside, to_cpp(first_pose), second->inside, to_cpp(second_pose),
+                             read);
+  });
+}
+
+bxt_status bxt_scene_distance(const bxt_scene* scene, const bxt_tree* tree, const bxt_pose* pose,
+                              uint32_t layers, const bxt_approximation* options,
+                              bxt_distance* distance, bxt_error* error) {
+  if (const char* name = first_null("scene", scene, "tree", tree, "distance", distance)) {
+    return refuse_null(error, name);
+  }
+  return find_distance(options, distance, error, [&](const DistanceOptions& read) {
+    return boxtree::distance(scene->inside, tree->inside, to_cpp(pose), layers, read);
+  });
+}
+
+bxt_status bxt_scene_distance_of(const bxt_scene* scene, uint32_t instance,
+                                 const bxt_approximation* options, bxt_distance* distance,
+                                 bxt_error* error) {
+  if (const char* name = first_null("scene", scene, "distance", distance)) {
+    return refuse_null(error, name);
+  }
+  return find_distance(options, distance, error, [&](const DistanceOptions& read) {
+    return boxtree::distance_of(scene->inside, instance, read);
   });
 }
 

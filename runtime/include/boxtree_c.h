@@ -75,7 +75,7 @@ extern "C" {
 
 /// The version of this interface: major * 65536 + minor. Programs run with a library of the same
 /// major version whose minor version is theirs or higher.
-#define BXT_ABI_VERSION 0x10003u
+#define BXT_ABI_VERSION 0x10004u
 
 /// BXT_ABI_VERSION of the library that is linked.
 BXT_API uint32_t bxt_abi_version(void);
@@ -1127,6 +1127,18 @@ BXT_API bxt_status bxt_scene_pair_contacts_with(const bxt_scene* scene, const bx
                                                 const bxt_pose* pose,
                                                 bxt_pair_contact_visitor visitor, void* context,
                                                 const bxt_limits* limits, bxt_error* error);
+/// How far a tree that is no part of the scene is from the nearest instance of these layers (a bit
+/// for each, BXT_ALL_LAYERS for all), as bxt_tree_distance() for one; `first` is a face of the
+/// scene, `second` one of the tree. Half a megabyte of stack, here and below.
+BXT_API bxt_status bxt_scene_distance(const bxt_scene* scene, const bxt_tree* tree,
+                                      const bxt_pose* pose, uint32_t layers,
+                                      const bxt_approximation* options, bxt_distance* distance,
+                                      bxt_error* error);
+/// How far an instance, moving or not, is from the nearest other one whose layer collides with its
+/// own; `first` is a face of the instance.
+BXT_API bxt_status bxt_scene_distance_of(const bxt_scene* scene, uint32_t instance,
+                                         const bxt_approximation* options, bxt_distance* distance,
+                                         bxt_error* error);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -7,61 +7,50 @@
 namespace boxtree {
 namespace {
 
-// One body tested against all instances that its box overlaps. Boxes are widened by the rounding
-// between the world and the space in which two trees are compared (PlacementBounds::error), each by
-// its own tree's share. The first tree of a comparison is the one whose pose magnifies errors less,
-// so both shares suffice.
+// One body tested against all instances that its box overlaps.
 struct BodyInScene : BoxInFrame, InstanceOutcome {
+  BodyInScene(const BoundScene& scene, const SceneBody& of, BodyPairVisitor pairs,
+              QueryWork& work) noexcept
+      : BoxInFrame{of.in_frame},
+        admission{scene, kPairQueries, of.layers, work},
+        body(of),
+        visitor(pairs) {}
+
   Admission admission;
-  const BoundTree& tree;
-  const Pose& pose;
-  double condition;            // of its placement
-  std::uint32_t own_instance;  // kNoInstance for a body that is no part of the scene
-  bool is_first;               // in reports
+  const SceneBody& body;
   BodyPairVisitor visitor;
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
-    if (instance == own_instance) return true;
-    const BodyPair::Placed own{own_instance, tree, pose}, met{instance, *other.tree, other.pose};
-    return note(other.placement.condition() < condition
-                    ? visitor({met, own, is_first}, admission.work)
-                    : visitor({own, met, !is_first}, admission.work));
+    return instance == body.instance ||
+           note(visitor(body.pair_with(instance, other), admission.work));
   }
 };
 
 // A moving body against those instances of the tree over moving ones with which it makes a pair
 // that has not been looked at: static ones, and moving ones that come after it.
 struct LaterMoving {
-  BodyInScene& body;
+  BodyInScene& in_scene;
   const Admission& admission;
   Errc& error;
 
-  [[nodiscard]] bool is_done() const noexcept { return body.is_done(); }
+  [[nodiscard]] bool is_done() const noexcept { return in_scene.is_done(); }
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return body.overlaps(box);
+    return in_scene.overlaps(box);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
-    return (instance <= body.own_instance && !other.at_rest) || body.visit(instance, other);
+    return (instance <= in_scene.body.instance && !other.at_rest) ||
+           in_scene.visit(instance, other);
   }
 };
 
-BodyInScene body_of(const BoundScene& scene, std::uint32_t instance,
-                    const BoundScene::Placed& placed, const PlacementBounds& bounds,
-                    BodyPairVisitor visitor, QueryWork& work) {
-  return {{scene.to_frame(bounds.world)},
-          {},
-          {scene, kPairQueries, scene.layer(placed.layer).collides_with, work},
-          *placed.tree,
-          placed.pose,
-          bounds.condition,
-          instance,
-          true,
-          visitor};
-}
-
-bool answers_contacts(const BoundScene& scene, std::uint32_t instance, std::uint32_t layer) {
-  return scene.is_enabled(instance) && (scene.layer(layer).query_kinds & kPairQueries) != 0;
+// Whatever the body meets, if there is one.
+Result<Visit> visit_pairs_of_body(const BoundScene& scene, const std::optional<SceneBody>& body,
+                                  BodyPairVisitor visitor, const QueryLimits& limits) {
+  if (!body) return Visit::kComplete;
+  QueryWork work(limits);
+  BodyInScene in_scene(scene, *body, visitor, work);
+  return outcome_of(visit_overlapping_instances(scene, in_scene), in_scene);
 }
 
 }  // namespace
@@ -71,17 +60,17 @@ Result<Visit> visit_moving_pairs(const BoundScene& scene, BodyPairVisitor visito
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   for (const BoundScene::Moving& moving : scene.moving()) {
-    if (moving.placed.at_rest || !answers_contacts(scene, moving.instance, moving.placed.layer)) {
-      continue;
-    }
-    BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.bounds, visitor, work);
-    Errc walked = walk_static(scene, body);
-    if (walked == Errc::kOk && !body.is_done()) {
-      LaterMoving later{body, body.admission, body.error};
+    if (moving.placed.at_rest) continue;
+    const SceneBody body = moving_body(scene, moving);
+    if (body.layers == 0) continue;
+    BodyInScene in_scene(scene, body, visitor, work);
+    Errc walked = walk_static(scene, in_scene);
+    if (walked == Errc::kOk && !in_scene.is_done()) {
+      LaterMoving later{in_scene, in_scene.admission, in_scene.error};
       MovingInstances<LaterMoving> others(later, scene.moving_tree());
       walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().decoder(), others);
     }
-    Result<Visit> visit = outcome_of(walked, body);
+    Result<Visit> visit = outcome_of(walked, in_scene);
     if (!visit || *visit == Visit::kStopped) return visit;
   }
   return Visit::kComplete;
@@ -89,38 +78,19 @@ Result<Visit> visit_moving_pairs(const BoundScene& scene, BodyPairVisitor visito
 
 Result<Visit> visit_pairs_of(const BoundScene& scene, std::uint32_t instance,
                              BodyPairVisitor visitor, const QueryLimits& limits) {
-  QueryWork work(limits);
-  if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
-  if (instance >= scene.instance_count()) return Errc::kInstanceIndex;
-  const std::optional<BoundScene::Placed> placed = scene.place_now(instance);
-  if (!placed) return Errc::kRecordInvalid;
-  if (!answers_contacts(scene, instance, placed->layer)) return Visit::kComplete;
-  const auto bounds = placed->bounds();
-  if (!bounds) return Errc::kRecordInvalid;
-  BodyInScene body = body_of(scene, instance, *placed, *bounds, visitor, work);
-  return outcome_of(visit_overlapping_instances(scene, body), body);
+  std::optional<SceneBody> body;
+  if (const Errc error = find_body(scene, instance, body); error != Errc::kOk) return error;
+  return visit_pairs_of_body(scene, body, visitor, limits);
 }
 
 Result<Visit> visit_pairs_with(const BoundScene& scene, const BoundTree& tree, const Pose& pose,
                                BodyPairVisitor visitor, LayerMask layers,
                                const QueryLimits& limits) {
-  QueryWork work(limits);
-  if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
-  const std::optional<Placement> placement = scene.place_in_units(tree, pose);
-  if (!placement) return Errc::kInvalidPose;
-  if (tree.empty()) return Visit::kComplete;
-  const auto bounds = placement->bounds(root_box<double>(tree));
-  if (!bounds) return Errc::kInvalidPose;
-  BodyInScene body{{scene.to_frame(bounds->world)},
-                   {},
-                   {scene, kPairQueries, layers, work},
-                   tree,
-                   pose,
-                   bounds->condition,
-                   kNoInstance,
-                   false,
-                   visitor};
-  return outcome_of(visit_overlapping_instances(scene, body), body);
+  std::optional<SceneBody> body;
+  if (const Errc error = place_body(scene, tree, pose, layers, body); error != Errc::kOk) {
+    return error;
+  }
+  return visit_pairs_of_body(scene, body, visitor, limits);
 }
 
 namespace {

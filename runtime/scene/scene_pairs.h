@@ -7,22 +7,10 @@
 
 #include <boxtree/scene.h>
 
+#include "runtime/scene/scene_body.h"
 #include "runtime/scene/scene_walk.h"
 
 namespace boxtree {
-
-/// A body and an instance, in the order in which their trees are compared: the first one's pose
-/// magnifies errors less.
-struct BodyPair {
-  struct Placed {
-    std::uint32_t instance;  // kNoInstance for a body that is no part of the scene
-    const BoundTree& tree;
-    const Pose& pose;
-  };
-  Placed first;
-  Placed second;
-  bool is_reported_swapped;  // whether answers name the second one first
-};
 
 /// Compares two trees.
 using BodyPairVisitor = FunctionRef<Result<Visit>(const BodyPair& pair, QueryWork& work)>;

@@ -13,6 +13,7 @@
 #include "runtime/query/shape_query.h"
 #include "runtime/query/visit_result.h"
 #include "runtime/scene/answer_each.h"
+#include "runtime/scene/near_point_walk.h"
 #include "runtime/scene/placed_box.h"
 #include "runtime/scene/scene_walk.h"
 #include "runtime/walk/walk_tree.h"
@@ -58,11 +59,6 @@ struct WorldBox : BoxInFrame {
     return visit_faces(*placed.tree, query, faces, work);
   }
 };
-
-// A squared distance in the scene's frame that covers everything within `distance`.
-double frame_bound(double distance, double error) noexcept {
-  return (distance + error) * (distance + error) * (1 + 16 * kRoundoffF64);
-}
 
 // A point in the scene's units, moved to the space of a tree; 0 if it is so far away that boxes
 // give no bound, and then all triangles of the tree are compared.
@@ -111,27 +107,15 @@ struct SphereInUnits {
 };
 
 struct PointInScene {
-  Admission admission;
+  const BoundScene& scene;
+  QueryWork& work;
   Eigen::Vector3d point;
-  Eigen::Vector3d point_in_frame;
-  double scene_margin;
-  double best;           // squared
-  double best_in_frame;  // squared: nothing farther can be as near
-  std::optional<SceneClosestPoint> found;
+  double best;  // squared
+  std::optional<SceneClosestPoint> found = {};
   std::uint32_t found_id = 0;
-  Errc error = Errc::kOk;
 
-  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk; }
-  [[nodiscard]] double bound() const noexcept { return best_in_frame; }
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return squared_distance(point_in_frame, box);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, point_in_frame, best_in_frame);
-  }
-  void set_bound() noexcept { best_in_frame = frame_bound(std::sqrt(best), scene_margin); }
-  [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
+  // Takes a nearer point of the instance, if there is one.
+  [[nodiscard]] Errc compare(std::uint32_t instance, const BoundScene::Placed& placed) {
     const Placement& placement = placed.placement;
     const BoundTree& tree = *placed.tree;
     const PointInTree in_tree(placement, point);
@@ -140,21 +124,19 @@ struct PointInScene {
       exact.least_stretch = stretch_of(placement.to_world().linear).least;
       exact.error = placement.distance_error(in_tree.at, point, root_box<double>(tree));
     }
-    WalkBound nodes(tree.node_count(), &admission.work);
+    WalkBound nodes(tree.node_count(), &work);
     PointQuery query(tree, nodes, in_tree.at, exact.bound_in_tree());
     query.placed = &exact;
-    error = find_nearest(tree, query);
-    if (error != Errc::kOk) return false;
-    if (!query.found) return true;
+    const Errc error = find_nearest(tree, query);
+    if (error != Errc::kOk || !query.found) return error;
     if (found && exact.best == best &&
-        !admission.scene.comes_first(placed.id, query.found->face, found_id, found->face)) {
-      return true;
+        !scene.comes_first(placed.id, query.found->face, found_id, found->face)) {
+      return Errc::kOk;
     }
     found = SceneClosestPoint{{*query.found}, instance};
     found_id = placed.id;
     best = exact.best;
-    set_bound();
-    return true;
+    return Errc::kOk;
   }
 };
 
@@ -245,17 +227,18 @@ ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& poin
   const double most = scene.to_units(max_distance);
   if (!is_within_range(at)) return {Errc::kInvalidQuery, "point"};
   if (!(most >= 0)) return {Errc::kInvalidQuery, "max_distance"};
-  PointInScene query{{scene, kPointQueries, layers, work},
-                     at,
-                     scene.to_frame(at),
-                     frame_error(scene, largest_magnitude(at)),
-                     largest_square_within(most),
-                     0,
-                     {}};
-  query.set_bound();
-  const Errc walked = visit_nearest_instances(scene, query);
+  const double error = frame_error(scene, largest_magnitude(at));
+  PointInScene query{scene, work, at, largest_square_within(most)};
+  const auto compare = [&](NearPointWalk& walk, std::uint32_t instance,
+                           const BoundScene::Placed& placed) {
+    const Errc failed = query.compare(instance, placed);
+    walk.set_bound(std::sqrt(query.best), error);
+    return failed;
+  };
+  NearPointWalk instances({scene, kPointQueries, layers, work}, scene.to_frame(at), compare);
+  instances.set_bound(std::sqrt(query.best), error);
+  const Errc walked = instances.run();
   if (walked != Errc::kOk) return walked;
-  if (query.error != Errc::kOk) return query.error;
   if (!query.found) return {};
   query.found->point = scene.to_world(query.found->point);
   query.found->distance = scene.to_world(std::sqrt(query.found->distance));

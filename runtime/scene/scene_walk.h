@@ -20,6 +20,12 @@ namespace boxtree {
          kLengthUnderflow;
 }
 
+/// A squared distance in the scene's frame that covers everything within `distance`; `error`:
+/// frame_error().
+[[nodiscard]] inline double frame_bound(double distance, double error) noexcept {
+  return (distance + error) * (distance + error) * (1 + 16 * kRoundoffF64);
+}
+
 /// Which instances a query admits, and its work limit.
 struct Admission {
   const BoundScene& scene;

@@ -151,7 +151,7 @@ expect 1 "$boxtree" query flat.bxt contacts
 grep -q '^boxtree: no_scene: flat.bxt: ' err
 expect 2 "$boxtree" query flat.bxt pair gone.bxt
 grep -q '^boxtree: file_not_found: gone.bxt: ' err
-expect 1 "$boxtree" query level.bxt distance flat.bxt
+expect 1 "$boxtree" query level.bxt overlap flat.bxt --within 0.1
 grep -q -- '--tree' err
 
 expect 1 "$boxtree" query level.bxt sphere --center 0,0,0 --radius=-1
@@ -204,6 +204,16 @@ expect 0 "$boxtree" query level.bxt --tree crate point --at 0,2,0 --json
 jq -e '(.distance - 1.6) | fabs < 1e-6' out >/dev/null
 expect 0 "$boxtree" query level.bxt pair level.bxt --tree2 crate --pose 0,0.3,0 --json
 jq -e '.hit and ([.pairs[][0].name] | unique == ["Floor"])' out >/dev/null
+# How far a tree is from the scene, and from which instance; the same as from that one alone.
+expect 0 "$boxtree" query level.bxt distance level.bxt --tree2 crate --pose 3,2,1 --json
+jq -e '.found and .converged and (.lower - 1.6 | fabs < 1e-6) and (.upper - 1.6 | fabs < 1e-6)' out >/dev/null
+same "$(jq -c '[.faces[0].name, .faces[1].instance, (.points[0][1] | fabs < 1e-6)]' out)" '["Floor",null,true]'
+for within in '1.59 false' '1.61 true'; do
+  expect 0 "$boxtree" query level.bxt distance level.bxt --tree2 crate --pose 3,2,1 --max-distance ${within% *} --json
+  same "$(jq -c .found out)" "${within#* }"
+done
+expect 0 "$boxtree" query layers.bxt --layer props distance level.bxt --tree2 crate --pose 0,2,0 --json
+same "$(jq -r '.faces[0].name' out)" right
 # Found by a newcomer: a scene as the second file was its first tree, in its own coordinates, without a word.
 expect 0 "$boxtree" cook --scene "$level/../meshes/crate.obj" -o one.bxt -q
 second='the second of two is a tree, and this is a scene; name a tree of the file with --tree2, in a line of a batch with "tree"'

@@ -239,6 +239,8 @@ RUNS = {
         "query field.bxt distance no_ids.bxt --pose 9,0,0",
         "query zones.bxt distance idless.bxt --pose 9,0,0",
         "query nameless.bxt --tree 0 distance field.bxt --pose 99,0,0",
+        "query level.bxt distance crate.bxt --pose 0,20,0",
+        "query nameless.bxt distance crate.bxt --pose 0,20,0",
     ],
     "query FILE overlap": [
         "query crate.bxt overlap arrays.bxt",

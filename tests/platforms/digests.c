@@ -504,6 +504,19 @@ static void ask_faces(const bxt_tree* tree) {
   }
 }
 
+static void add_distance(const bxt_distance* distance) {
+  begin();
+  add_number(distance->lower);
+  add_number(distance->upper);
+  add_word(distance->converged);
+  add_word(distance->is_found);
+  add_face(distance->first);
+  add_face(distance->second);
+  add_vector(distance->first_point);
+  add_vector(distance->second_point);
+  end();
+}
+
 static void ask_pairs(const bxt_tree* first, const bxt_tree* second, const region* r, size_t count) {
   for (size_t i = 0; i < count; ++i) {
     const bxt_pose pose = pose_in(r);
@@ -516,16 +529,7 @@ static void ask_pairs(const bxt_tree* first, const bxt_tree* second, const regio
     bxt_approximation options = bxt_default_approximation();
     options.relative_error = 0.0625;
     ask(i, bxt_tree_distance(first, NULL, second, &pose, &options, &distance, NULL));
-    begin();
-    add_number(distance.lower);
-    add_number(distance.upper);
-    add_word(distance.converged);
-    add_word(distance.is_found);
-    add_face(distance.first);
-    add_face(distance.second);
-    add_vector(distance.first_point);
-    add_vector(distance.second_point);
-    end();
+    add_distance(&distance);
     if (i % 8 != 0) continue;
     kind = PAIRS;
     ask(i, bxt_tree_overlap_pairs(first, NULL, second, &pose, visit_pair, NULL, NULL, NULL));
@@ -595,6 +599,10 @@ static void ask_scene(bxt_scene* scene, size_t count) {
     ask(i, bxt_scene_instances_in_frustum(scene, planes, visit_instance, NULL, NULL, NULL));
     if (i % 64 == 0) ask(i, bxt_scene_contacts(scene, visit_pair, NULL, NULL, NULL));
     if (i % 64 == 1) ask(i, bxt_scene_pair_contacts_of(scene, number, visit_pair_contact, NULL, NULL, NULL));
+    if (i % 16 != 2) continue;
+    bxt_distance distance = {.struct_size = sizeof distance};
+    ask(i, bxt_scene_distance_of(scene, number, NULL, &distance, NULL));
+    add_distance(&distance);
   }
 }
 

@@ -43,6 +43,9 @@
 #if BOXTREE_HAS_COLLIDE_QUERIES
 #include <boxtree/scene_collide.h>
 #endif
+#if BOXTREE_HAS_DISTANCE_QUERIES
+#include <boxtree/scene_distance.h>
+#endif
 #if BOXTREE_HAS_FRUSTUM_QUERIES
 #include <boxtree/scene_frustum.h>
 #endif

@@ -145,6 +145,9 @@ bool query_scene(const boxtree::File& file, const Tree& tree) {
   bool all = scene->update(0, pose).ok() && query(*scene) && contacts(*scene, kGoOn).ok() &&
              overlap_pairs(*scene, tree, pose, kGoOn).ok();
   if constexpr (has(kFrustum)) all = all && instances_in_frustum(*scene, view(), kGoOn).ok();
+  if constexpr (has(kDistance)) {
+    all = all && distance(*scene, tree, pose).ok() && distance_of(*scene, 0).ok();
+  }
   if constexpr (has(kPairContacts)) {
     all = all && pair_contacts(*scene, kGoOn).ok() && pair_contacts(*scene, tree, pose, kGoOn).ok();
   }

@@ -2,6 +2,7 @@
 // Two bodies by the C interface: the answers of the C++ interface.
 #include <boxtree_c.h>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -190,49 +191,94 @@ TEST_F(CPairs, OverlapsWithinADistanceAreThoseOfCpp) {
   });
 }
 
+// Compares distances with options that end them in several ways: `of_cpp(options)` and
+// `of_c(options, answer, error)`.
+template <class OfCpp, class OfC>
+void expect_same_distances(const OfCpp& of_cpp, const OfC& of_c) {
+  for (const int kind : {0, 1, 2, 3}) {
+    DistanceOptions options;
+    if (kind == 1) options.relative_error = 0.1;
+    if (kind == 2) options.node_budget = 2;
+    if (kind == 3) options.max_distance = 0;
+    bxt_approximation c = bxt_default_approximation();
+    c.relative_error = options.relative_error;
+    c.node_budget = options.node_budget;
+    c.max_distance = options.max_distance;
+    const auto found = of_cpp(options);
+    Answer expected;
+    note_error(found, expected);
+    if (found) {
+      const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+      using Witness = std::decay_t<decltype(*found->witness)>;
+      const Witness witness = found->witness.value_or(Witness{{}, zero, zero});
+      Numbers numbers = Numbers() << found->converged << found->witness.has_value() << found->lower
+                                  << found->upper;
+      const Numbers faces = numbers_of_pair(witness.faces);
+      numbers.insert(numbers.end(), faces.begin(), faces.end());
+      expected.found.push_back(numbers << witness.first << witness.second << found->nodes_expanded);
+    }
+    ASSERT_EQ(answer_of_c([&](bxt_error* error, std::vector<Numbers>& told) {
+                bxt_distance answer = {};
+                answer.struct_size = sizeof answer;
+                answer.lower = -5;
+                const bxt_status status = of_c(kind == 0 ? nullptr : &c, &answer, error);
+                if (status != BXT_OK) {
+                  EXPECT_EQ(answer.lower, -5);
+                  return status;
+                }
+                told.push_back(Numbers() << answer.converged << answer.is_found << answer.lower
+                                         << answer.upper << answer.first << answer.second
+                                         << answer.first_point << answer.second_point
+                                         << answer.nodes_expanded);
+                return status;
+              }),
+              expected);
+  }
+}
+
 TEST_F(CPairs, DistancesAreThoseOfCpp) {
   for_each_pair([&](const Tree& a, const Pose& pa, const Tree& b, const Pose& pb,
                     const bxt_tree* ca, const bxt_pose* cpa, const bxt_tree* cb,
                     const bxt_pose* cpb) {
-    for (const int kind : {0, 1, 2, 3}) {
-      DistanceOptions options;
-      if (kind == 1) options.relative_error = 0.1;
-      if (kind == 2) options.node_budget = 2;
-      if (kind == 3) options.max_distance = 0;
-      bxt_approximation c = bxt_default_approximation();
-      c.relative_error = options.relative_error;
-      c.node_budget = options.node_budget;
-      c.max_distance = options.max_distance;
-      const Result<Distance> found = distance(a, pa, b, pb, options);
-      Answer expected;
-      note_error(found, expected);
-      if (found) {
-        const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-        const DistanceWitness witness = found->witness.value_or(DistanceWitness{{}, zero, zero});
-        Numbers numbers = Numbers() << found->converged << found->witness.has_value()
-                                    << found->lower << found->upper;
-        const Numbers faces = numbers_of_pair(witness.faces);
-        numbers.insert(numbers.end(), faces.begin(), faces.end());
-        expected.found.push_back(numbers << witness.first << witness.second
-                                         << found->nodes_expanded);
+    expect_same_distances(
+        [&](const DistanceOptions& options) { return distance(a, pa, b, pb, options); },
+        [&](auto... rest) { return bxt_tree_distance(ca, cpa, cb, cpb, rest...); });
+  });
+}
+
+TEST(CSceneDistances, AreThoseOfCpp) {
+  const test::CookedTree body = test::cook_tree(test::torus(8, 6), CodecId::kWide8);
+  const test::CFile c_file = test::open_c(body.bytes);
+  const test::CTree c_body = test::bind_c(c_file);
+  test::for_each_scene([&](const Scene& scene, const bxt_scene* c_scene) {
+    for (const double shift : {0.0, 3.0, 40.0}) {
+      Pose pose = Pose::Identity();
+      pose.translation().x() = shift;
+      const bxt_pose c_pose = test::pose_of(pose);
+      for (const LayerMask layers : {kAllLayers, LayerMask{1}, LayerMask{0}}) {
+        expect_same_distances(
+            [&](const DistanceOptions& options) {
+              return distance(scene, body.tree, pose, layers, options);
+            },
+            [&](auto... rest) {
+              return bxt_scene_distance(c_scene, c_body.get(), &c_pose, layers, rest...);
+            });
       }
-      ASSERT_EQ(answer_of_c([&](bxt_error* error, std::vector<Numbers>& told) {
-                  bxt_distance answer = {};
-                  answer.struct_size = sizeof answer;
-                  answer.lower = -5;
-                  const bxt_status status =
-                      bxt_tree_distance(ca, cpa, cb, cpb, kind == 0 ? nullptr : &c, &answer, error);
-                  if (status != BXT_OK) {
-                    EXPECT_EQ(answer.lower, -5);
-                    return status;
-                  }
-                  told.push_back(Numbers() << answer.converged << answer.is_found << answer.lower
-                                           << answer.upper << answer.first << answer.second
-                                           << answer.first_point << answer.second_point
-                                           << answer.nodes_expanded);
-                  return status;
-                }),
-                expected);
+    }
+    Pose flat = Pose::Identity();
+    flat.linear().setZero();
+    const bxt_pose c_flat = test::pose_of(flat);
+    expect_same_distances(
+        [&](const DistanceOptions& options) {
+          return distance(scene, body.tree, flat, kAllLayers, options);
+        },
+        [&](auto... rest) {
+          return bxt_scene_distance(c_scene, c_body.get(), &c_flat, BXT_ALL_LAYERS, rest...);
+        });
+    for (const std::uint32_t instance : {0u, 3u, 1000u}) {
+      expect_same_distances(
+          [&](const DistanceOptions& options) { return distance_of(scene, instance, options); },
+          [&](auto... rest) { return bxt_scene_distance_of(c_scene, instance, rest...); });
     }
   });
 }

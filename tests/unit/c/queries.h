@@ -299,6 +299,18 @@ struct CQuery {
          return bxt_scene_pair_contacts_with(scene, tree, &near, kPairContacts, nullptr, nullptr,
                                              nullptr);
        }},
+      {"scene distance", 512,
+       [=] {
+         bxt_distance told = {};
+         told.struct_size = sizeof told;
+         return bxt_scene_distance(scene, tree, &far, BXT_ALL_LAYERS, nullptr, &told, nullptr);
+       }},
+      {"scene distance_of", 512,
+       [=] {
+         bxt_distance told = {};
+         told.struct_size = sizeof told;
+         return bxt_scene_distance_of(scene, 0, nullptr, &told, nullptr);
+       }},
   };
 }
 

@@ -229,6 +229,12 @@ TEST_F(CArguments, StructsThatAreWrittenMayBeLonger) {
   expect_output<bxt_distance>("distance", [&](bxt_distance* distance) {
     return bxt_tree_distance(tree, nullptr, tree, nullptr, nullptr, distance, nullptr);
   });
+  expect_output<bxt_distance>("scene distance", [&](bxt_distance* distance) {
+    return bxt_scene_distance(scene, tree, nullptr, BXT_ALL_LAYERS, nullptr, distance, nullptr);
+  });
+  expect_output<bxt_distance>("scene distance_of", [&](bxt_distance* distance) {
+    return bxt_scene_distance_of(scene, 0, nullptr, distance, nullptr);
+  });
   expect_output<bxt_instance>("scene_instance", [&](bxt_instance* instance) {
     return bxt_scene_instance(scene, 0, instance, nullptr);
   });
@@ -495,6 +501,10 @@ TEST_F(CArguments, ThatAreNullAreRefused) {
                     pair_contact_visitor, nullptr, nullptr);
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "tree"}, {3, "visitor"}), bxt_scene_pair_contacts_with,
                     scene, tree, nullptr, pair_contact_visitor, nullptr, nullptr);
+  EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "tree"}, {5, "distance"}), bxt_scene_distance, scene,
+                    tree, nullptr, BXT_ALL_LAYERS, nullptr, &distance);
+  EXPECT_NAMES_NULL(LIST({0, "scene"}, {3, "distance"}), bxt_scene_distance_of, scene, 0, nullptr,
+                    &distance);
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {2, "instance"}), bxt_scene_instance, scene, 0, &instance);
   EXPECT_NAMES_NULL(LIST({0, "scene"}, {1, "name"}, {2, "number"}), bxt_scene_find_instance, scene,
                     name, &number);

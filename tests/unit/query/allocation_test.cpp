@@ -102,7 +102,8 @@ TEST(Allocation, QueriesOfScenesNeverAllocate) {
       overlap_sphere(scene, {0, 0, 0}, 9, all) &&
       overlap_box(scene, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, all) &&
       closest_point(scene, {3, 2, 1}) && contacts(scene, all) && contacts_of(scene, 0, all) &&
-      pair_contacts(scene, all) && pair_contacts_of(scene, 0, all);
+      pair_contacts(scene, all) && pair_contacts_of(scene, 0, all) && distance_of(scene, 0) &&
+      distance(scene, scene.trees()[0], Pose::Identity());
   EXPECT_EQ(allocations, before);
   EXPECT_TRUE(answered);
 }
