@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 // CGAL's AABB tree, exact predicates.
-#include <CGAL/AABB_face_graph_triangle_primitive.h>
-#include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/version.h>
+#if CGAL_VERSION_MAJOR >= 6
+#include <CGAL/AABB_traits_3.h>
+#include <CGAL/AABB_triangle_primitive_3.h>
+#include <variant>
+#else
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#endif
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -16,8 +22,22 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Iterator = std::vector<Kernel::Triangle_3>::const_iterator;
+#if CGAL_VERSION_MAJOR >= 6
+using Primitive = CGAL::AABB_triangle_primitive_3<Kernel, Iterator>;
+using Traits = CGAL::AABB_traits_3<Kernel, Primitive>;
+template <class T, class... Kinds>
+const T* held(const std::variant<Kinds...>& intersection) {
+  return std::get_if<T>(&intersection);
+}
+#else
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, Iterator>;
-using CgalTree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+using Traits = CGAL::AABB_traits<Kernel, Primitive>;
+template <class T, class... Kinds>
+const T* held(const boost::variant<Kinds...>& intersection) {
+  return boost::get<T>(&intersection);
+}
+#endif
+using CgalTree = CGAL::AABB_tree<Traits>;
 
 Kernel::Point_3 to_point(const Eigen::Vector3d& p) {
   return {p.x(), p.y(), p.z()};
@@ -40,8 +60,7 @@ class CgalSubject : public Subject {
   // separately.
   [[nodiscard]] SubjectBytes bytes() const override {
     const auto n = static_cast<double>(triangles_.size());
-    const double tree =
-        n * (sizeof(CGAL::AABB_node<CGAL::AABB_traits<Kernel, Primitive>>) + sizeof(Primitive));
+    const double tree = n * (sizeof(CGAL::AABB_node<Traits>) + sizeof(Primitive));
     return {tree, tree + n * sizeof(Kernel::Triangle_3)};
   }
   bool rays(std::span<const Ray> rays, std::span<double> out) override {
@@ -55,9 +74,9 @@ class CgalSubject : public Subject {
       const auto distance_to = [&](const Kernel::Point_3& p) {
         return std::sqrt(CGAL::squared_distance(p, ray.source())) / rays[i].direction.norm();
       };
-      if (const auto* point = boost::get<Kernel::Point_3>(&hit->first)) {
+      if (const auto* point = held<Kernel::Point_3>(hit->first)) {
         out[i] = distance_to(*point);
-      } else if (const auto* segment = boost::get<Kernel::Segment_3>(&hit->first)) {
+      } else if (const auto* segment = held<Kernel::Segment_3>(hit->first)) {
         out[i] = std::min(distance_to(segment->source()), distance_to(segment->target()));
       }
     }
