@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is below a point of the courtyard, and what does the crate meet when it is put down there?
+// What is below a point of the courtyard, what does the crate meet when it is put down there, and
+// how far from the nearest is it two higher?
 //   scene level.bxt
 #include <cstdio>
 #include <set>
@@ -39,5 +40,14 @@ int main(int argument_count, char** arguments) {
   });
   for (const std::string_view name : names)
     std::printf("meets %.*s\n", int(name.size()), name.data());
-  return visit ? 0 : 1;
+  if (!visit) return 1;
+
+  pose.translation()[1] += 2;
+  if (!scene->update(*crate, pose)) return 1;
+  const auto apart = boxtree::distance_of(*scene, *crate);
+  if (!apart || !apart->witness) return 1;
+  const auto nearest = scene->info(apart->witness->faces.second.instance);
+  if (!nearest) return 1;
+  std::printf("%.3f from %.*s\n", apart->upper, int(nearest->name.size()), nearest->name.data());
+  return 0;
 }

@@ -135,11 +135,13 @@ grep -q '^height 2, within 16: disjoint$' overlap_within.out
 # Below 0.375: the floor and the lower plate, 64 + 4.
 prints traverse level.bxt <<<"68 square metres"
 # Step 6 of make_level.py ends at 6 * 0.18 and at z from -4.65 to -4.35; the crate reaches from -4.9 to -4.1, into both neighbours.
+# Two higher its lower edge is at y 2.68 and z -4.9; that of step 10 is at 1.8 and -5.55: 0.88 and 0.65 apart. Of 9 and 11 it is 1.12 and 1.18.
 prints scene courtyard.bxt <<'END'
 Step 6 at height 1.080
 meets Step 5
 meets Step 6
 meets Step 7
+1.094 from Step 10
 END
 # Both triangles of its top, whose middle is 0.5 from that of the view, and whose diagonal passes the latter at 0.05.
 prints frustum courtyard.bxt <<'END'
