@@ -49,7 +49,7 @@ constexpr std::array kTable = {
     ErrcInfo{Errc::kDuplicateDiffers, "duplicate_differs",
              "a face listed as a copy of another one is not the same", 3},
     ErrcInfo{Errc::kInvalidQuery, "invalid_query", "NaN, infinite or empty query", 1},
-    ErrcInfo{Errc::kInvalidPose, "invalid_pose", "pose is not finite or not invertible", 1},
+    ErrcInfo{Errc::kInvalidPose, "invalid_pose", "pose is not finite, not invertible or leads too far away", 1},
     ErrcInfo{Errc::kPartLeftOut, "part_left_out",
              "a needed part was left out; require it when the file is bound, which tells the line",
              5},

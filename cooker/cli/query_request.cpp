@@ -563,9 +563,10 @@ Error explained_pose(std::string_view whose, const Pose& pose) {
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (Eigen::Index column = 0; column < 4; ++column) numbers.push_back(pose(row, column));
   }
-  return {Errc::kInvalidPose,
-          fmt::format("{} pose {}; expected finite numbers of an invertible map, found {}", whose,
-                      pose_fault(pose), list_of(numbers))};
+  return {
+      Errc::kInvalidPose,
+      fmt::format("{} pose {}; expected finite numbers of an invertible map within reach, found {}",
+                  whose, pose_fault(pose), list_of(numbers))};
 }
 
 Error explained(const Error& error, const QueryRequest& request) {

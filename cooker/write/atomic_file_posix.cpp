@@ -30,16 +30,17 @@ bool cannot_exchange(int error) {
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create_beside(const fs::path& given) {
+  struct stat old {};
+  // By the name that was given: /proc has links to what has no other name.
+  if (::stat(given.c_str(), &old) == 0 && !S_ISREG(old.st_mode) && !S_ISDIR(old.st_mode)) {
+    return Error{Errc::kWriteFailed, given.string() + ": exists and is not a regular file"};
+  }
   const Result<fs::path> target = follow_links(given);
   if (!target) return target.error();
-  struct stat old {};
   const bool exists = ::stat(target->c_str(), &old) == 0;
   if (!exists && errno != ENOENT) return write_failure(given, "cannot tell whether it exists");
   if (exists && S_ISDIR(old.st_mode)) {
     return Error{Errc::kWriteFailed, given.string() + ": is a folder; expected the name of a file"};
-  }
-  if (exists && !S_ISREG(old.st_mode)) {
-    return Error{Errc::kWriteFailed, given.string() + ": exists and is not a regular file"};
   }
   if (!target->has_filename()) return Error{Errc::kWriteFailed, "a file without a name"};
   const fs::path directory = folder_of(*target);

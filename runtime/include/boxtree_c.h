@@ -121,7 +121,7 @@ enum {
 
   // Binding and querying.
   BXT_INVALID_QUERY = 50,           ///< An argument is not valid; the message names it.
-  BXT_INVALID_POSE = 51,            ///< A pose is not finite or not invertible.
+  BXT_INVALID_POSE = 51,            ///< A pose is not finite, not invertible or leads too far.
   BXT_PART_LEFT_OUT = 52,           ///< A needed part was left out when the file was cooked.
   BXT_EXTERNAL_MESH_NEEDED = 53,    ///< The tree has no geometry; give the mesh when binding.
   BXT_EXTERNAL_MESH_MISMATCH = 54,  ///< The mesh given is not the one it was cooked from.
@@ -879,7 +879,7 @@ enum {
   BXT_RAY_QUERIES = 1,    ///< Rays and casts.
   BXT_BOX_QUERIES = 2,    ///< What touches a shape at rest: overlaps, collide, frustums.
   BXT_POINT_QUERIES = 4,  ///< Closest points.
-  BXT_PAIR_QUERIES = 8,   ///< Contacts of instances, and of a tree with a scene.
+  BXT_PAIR_QUERIES = 8,   ///< Contacts and distances of instances, and of a tree with a scene.
   BXT_ALL_QUERIES = 15    ///< All of them.
 };
 
@@ -1129,7 +1129,7 @@ BXT_API bxt_status bxt_scene_pair_contacts_with(const bxt_scene* scene, const bx
                                                 const bxt_limits* limits, bxt_error* error);
 /// How far a tree that is no part of the scene is from the nearest instance of these layers (a bit
 /// for each, BXT_ALL_LAYERS for all), as bxt_tree_distance() for one; `first` is a face of the
-/// scene, `second` one of the tree. Half a megabyte of stack, here and below.
+/// scene, `second` one of the tree. Up to 528 KB of stack, here and below.
 BXT_API bxt_status bxt_scene_distance(const bxt_scene* scene, const bxt_tree* tree,
                                       const bxt_pose* pose, uint32_t layers,
                                       const bxt_approximation* options, bxt_distance* distance,

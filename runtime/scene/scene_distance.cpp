@@ -25,7 +25,7 @@ namespace {
 
 // An instance, and how far it is from the body at least, by their boxes.
 struct NearInstance {
-  double gap;  // in units of the scene
+  float gap;  // in units of the scene, rounded down
   std::uint32_t instance;
 
   // The order in which instances are compared: the same whatever order a walk finds them in, so
@@ -37,20 +37,21 @@ struct NearInstance {
 
 // Of boxes in the scene's frame, where `error` is frame_error() of the first one: that of the other
 // one is larger by the rounding of what is between them at most.
-double least_gap(const Box<double>& a, const Box<double>& b, double error) noexcept {
+float least_gap(const Box<double>& a, const Box<double>& b, double error) noexcept {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double outside = std::max({0.0, a.low[k] - b.high[k], b.low[k] - a.high[k]});
     sum += outside * outside;
   }
-  return std::max(0.0, std::sqrt(sum) * (1 - 64 * kRoundoffF64) - error);
+  return float_below(std::max(0.0, std::sqrt(sum) * (1 - 64 * kRoundoffF64) - error));
 }
 
-// Finds the instances after `last` that are nearest to a body, as many as there is room for. Walks
-// compare boxes with the center of the body's.
+// Finds the instances after `last` that are nearest to a body, as many as there is room for: so
+// many that a body in the midst of thousands has a few turns, and as few as the stack has room for
+// (threads.md). Walks compare boxes with the center of the body's.
 class NearInstances {
  public:
-  static constexpr std::size_t kRoom = 64;
+  static constexpr std::size_t kRoom = 1024;
 
   NearInstances(const BoundScene& scene, const SceneBody& body, const NearInstance& last,
                 double most, QueryWork& work) noexcept
@@ -73,7 +74,9 @@ class NearInstances {
     };
     NearPointWalk walk({scene_, kPairQueries, body_.layers, work_}, center_, met);
     set_bound(walk);
-    return walk.run();
+    const Errc error = walk.run();
+    std::sort_heap(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count_));
+    return error;
   }
 
   /// Whether there may be more.
@@ -91,14 +94,17 @@ class NearInstances {
     const NearInstance met{least_gap(body_.in_frame, scene_.to_frame(bounds->world), error_),
                            instance};
     if (!(last_ < met) || met.gap > most_) return Errc::kOk;
-    std::size_t place = count_;
-    while (place > 0 && met < near_[place - 1]) --place;
-    if (place == kRoom) return Errc::kOk;
-    count_ = std::min(count_ + 1, kRoom);
-    for (std::size_t i = count_ - 1; i > place; --i) near_[i] = near_[i - 1];
-    near_[place] = met;
+    // A heap, the farthest on top.
+    const auto begin = near_.begin();
     if (is_full()) {
-      most_ = near_.back().gap;
+      if (!(met < near_.front())) return Errc::kOk;
+      std::pop_heap(begin, begin + kRoom);
+      --count_;
+    }
+    near_[count_++] = met;
+    std::push_heap(begin, begin + static_cast<std::ptrdiff_t>(count_));
+    if (is_full()) {
+      most_ = near_.front().gap;
       set_bound(walk);
     }
     return Errc::kOk;

@@ -22,6 +22,10 @@ cmp crate.bxt piped.bxt
 told() { sed -E 's/(wrote )?(crate.bxt|named.glb|standard output)/NAME/; s/in [0-9.]+ s;/in S;/' "$1"; }
 same "$(told err)" "$(told said)"
 grep -q '^wrote standard output, [0-9]* bytes, in ' err
+# Found by a newcomer: the name of a pipe in /proc was told, where none can be created.
+status=0
+said=$("$boxtree" cook crate.obj -o /dev/stdout 2>&1 | cat) || status=$?
+same "$status,$said" '2,boxtree: write_failed: /dev/stdout: exists and is not a regular file'
 "$boxtree" cook crate.obj -o - --strip -q >piped.bxt 2>err
 cmp crate.bxt piped.bxt
 same "$(wc -c <err)" 0

@@ -53,7 +53,7 @@ enum class Errc : std::uint16_t {
 
   // 50..59: binding and querying.
   kInvalidQuery = 50,  ///< NaN, infinite or empty query.
-  kInvalidPose = 51,   ///< Pose is not finite or not invertible.
+  kInvalidPose = 51,   ///< Pose is not finite, not invertible or leads too far away.
   /// A needed part was left out; require it when the file is bound, which tells the line.
   kPartLeftOut = 52,
   /// The tree was cooked without geometry; give the mesh when binding.

@@ -20,7 +20,7 @@ inline constexpr QueryKinds kRayQueries = 1;
 inline constexpr QueryKinds kBoxQueries = 2;
 /// Closest points.
 inline constexpr QueryKinds kPointQueries = 4;
-/// Two trees: contacts of instances, and of a tree with a scene.
+/// Two trees: contacts and distances of instances, and of a tree with a scene.
 inline constexpr QueryKinds kPairQueries = 8;
 /// All of them.
 inline constexpr QueryKinds kAllQueries = 15;

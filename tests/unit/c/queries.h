@@ -299,13 +299,13 @@ struct CQuery {
          return bxt_scene_pair_contacts_with(scene, tree, &near, kPairContacts, nullptr, nullptr,
                                              nullptr);
        }},
-      {"scene distance", 512,
+      {"scene distance", 528,
        [=] {
          bxt_distance told = {};
          told.struct_size = sizeof told;
          return bxt_scene_distance(scene, tree, &far, BXT_ALL_LAYERS, nullptr, &told, nullptr);
        }},
-      {"scene distance_of", 512,
+      {"scene distance_of", 528,
        [=] {
          bxt_distance told = {};
          told.struct_size = sizeof told;

@@ -224,7 +224,7 @@ INSTANTIATE_TEST_SUITE_P(Codecs, SceneDistanceTest,
 // Spheres around each other, `count` of them, whose boxes all hold the body: none tells how far
 // away it is, so all have to be compared, in several turns.
 TEST(SceneDistanceOfShells, ComparesAsManyAsThereAre) {
-  constexpr std::uint32_t kShells = 150, kNearest = 140;
+  constexpr std::uint32_t kShells = 2500, kNearest = 2400;
   cooker::SceneParts parts;
   for (std::uint32_t i = 0; i < kShells; ++i) {
     Pose pose = Pose::Identity();
