@@ -19,6 +19,7 @@
 #include "runtime/scene/near_point_walk.h"
 #include "runtime/scene/scene_body.h"
 #include "runtime/scene/scene_walk.h"
+#include "runtime/tree/float_range.h"
 
 namespace boxtree {
 namespace {
@@ -109,9 +110,10 @@ class NearInstances {
     }
     return Errc::kOk;
   }
-  // least_gap() takes up to 64 roundings off.
+  // least_gap() takes off up to 64 roundings, and two steps of a float: what is as near as the
+  // farthest that is kept may have a number that comes before its.
   void set_bound(NearPointWalk& walk) const noexcept {
-    walk.set_bound(most_ * (1 + 128 * kRoundoffF64), reach_ + error_);
+    walk.set_bound(most_ * (1 + 8 * kRoundoffF32), reach_ + error_ + kFloatUnderflow);
   }
 
   const BoundScene& scene_;

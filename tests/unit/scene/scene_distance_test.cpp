@@ -242,6 +242,35 @@ TEST(SceneDistanceOfShells, ComparesAsManyAsThereAre) {
   EXPECT_NEAR(found.upper, alone.upper, 1e-12);
 }
 
+// More boxes than there is room for are a little nearer than that of the nearest instance, which
+// has the first number: their gaps are one float.
+TEST(SceneDistanceOfACrowd, MissesNoneWhoseGapIsNearlyThatOfOthers) {
+  constexpr std::uint32_t kOthers = 3000;
+  // A triangle across its box, and two in opposite sides of the same box.
+  cooker::SourceMesh across, facing, speck;
+  across.positions.f32 = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  facing.positions.f32 = {0, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0, 1, 0, 1};
+  speck.positions.f32 = {0, 0, 0, 0, 1e-9F, 0, 0, 0, 1e-9F};
+  for (cooker::SourceMesh* mesh : {&across, &facing, &speck}) {
+    for (std::uint32_t i = 0; i < mesh->positions.size(); i += 3) {
+      mesh->faces.push_back({{i, i + 1, i + 2, cooker::kNoCorner}});
+    }
+  }
+  cooker::SceneParts parts;
+  for (std::uint32_t i = 0; i <= kOthers; ++i) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = 10 + (i == 0 ? 1e-7 : 1e-8 + i * 1e-11);
+    parts.instances.push_back({.tree = i == 0 ? 1u : 0u, .id = i, .moves = true, .pose = pose});
+  }
+  const CookedScene cooked = test::cook_scene({across, facing}, parts);
+  const Scene scene = require(Scene::bind(cooked.file));
+  const test::CookedTree body = test::cook_tree(speck, CodecId::kWide8);
+  const SceneDistance found = require(distance(scene, body.tree, Pose::Identity()));
+  EXPECT_NEAR(found.upper, 10 + 1e-7, 1e-12);
+  ASSERT_TRUE(found.witness.has_value());
+  EXPECT_EQ(found.witness->faces.first.instance, 0u);
+}
+
 class SceneDistanceErrors : public testing::Test {
  protected:
   SceneDistanceErrors()
