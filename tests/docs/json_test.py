@@ -241,6 +241,7 @@ RUNS = {
         "query nameless.bxt --tree 0 distance field.bxt --pose 99,0,0",
         "query level.bxt distance crate.bxt --pose 0,20,0",
         "query nameless.bxt distance crate.bxt --pose 0,20,0",
+        "query parts.bxt --layer none distance crate.bxt",
     ],
     "query FILE overlap": [
         "query crate.bxt overlap arrays.bxt",
