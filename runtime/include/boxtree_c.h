@@ -25,9 +25,9 @@
 // bxt_default_...() instead: 0 is a value of their members, such as no layer and no node, and not
 // the default; NULL in their place is all defaults. A bxt_motion comes from bxt_motion_along().
 // Later versions add members at the end: a library reads and writes no member that its caller does
-// not know, and refuses (BXT_INVALID_QUERY) one it does not know itself unless it is zero. Of an
-// array of structs the first one's size is that of all; the others need not set it. Arrays that are
-// written have it in all of them.
+// not know, and refuses (BXT_INVALID_QUERY) one of an input that it does not know itself, unless it
+// is zero. Of an array of structs the first one's size is that of all; the others need not set it.
+// Arrays that are written have it in all of them.
 //
 // Memory. Handles come from functions with "open", "bind", "assemble" or "copy" in their names and
 // are given back, once, to the one that is named there; NULL is given back for nothing. The memory
@@ -522,8 +522,8 @@ static inline bxt_face_options bxt_default_face_options(void) {
 }
 
 /// How near to the truth an answer has to be, and what it may cost: [lower, upper] has converged if
-/// upper <= lower * (1 + relative_error) or upper <= lower + absolute_error, or where rounding lets
-/// them be no nearer. NULL: the default.
+/// upper <= lower * (1 + relative_error) or upper <= lower + absolute_error, but for what rounding
+/// takes from both. NULL: the default.
 typedef struct bxt_approximation {
   uint32_t struct_size;   ///< sizeof(bxt_approximation).
   uint32_t reserved;      ///< 0

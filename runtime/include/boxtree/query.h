@@ -183,7 +183,8 @@ struct QueryLimits {
 
 /// How near to the truth an answer has to be, and what it may cost. An answer [lower, upper] has
 /// converged if `upper <= lower * (1 + relative_error)` or `upper <= lower + absolute_error`:
-/// whichever allows more. Zeros require all that double tells.
+/// whichever allows more, but for what rounding takes from both, some 2^-44 of the extent and the
+/// distance. Zeros require all that double tells.
 struct Approximation {
   double relative_error = 0;  ///< 0 or more [0].
   double absolute_error = 0;  ///< A length, 0 or more [0].

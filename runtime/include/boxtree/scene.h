@@ -5,7 +5,7 @@
 // Each query answers for the instances of the given layers whose layer answers its kind. Errors, if
 // not said otherwise: those of the same query on a tree; kPartLeftOut when the scene was cooked
 // without the kind; kRecordInvalid on corrupt bytes. Limits count for all instances together. None
-// allocates; contacts and pairs take up to 352 KB of stack, all others at most 64 KB.
+// allocates; contacts and pairs take up to 352 KB of stack, all others here at most 64 KB.
 #pragma once
 
 #include <cstddef>
