@@ -193,16 +193,16 @@ CoreDistance hull_distance(std::span<const Eigen::Vector3d> points,
   const double size = search.largest;
   // Closer than that the line between two points is not trusted.
   constexpr double kNear = 0x1p-20;
-  // What differences and their products are off by.
-  constexpr double kError = 64 * kRoundoffF64;
-  const double volume_error = kError * (size * size * size);
+  // What differences and their products are off by, as a share of their size.
+  constexpr double kShare = 64 * kRoundoffF64;
+  const double volume_error = kShare * (size * size * size);
   Eigen::Vector3d way = (corner[0] + corner[1]) + corner[2];
   if (way.isZero(0)) way = Eigen::Vector3d::UnitX();
   const DifferencePoint first = search.least(way);
   Differences difference{first, first, first};
   way = first.at;
   double squared = squared_length(way);
-  for (int step = 0; step < kMostDirections && squared > kError * kError * size * size; ++step) {
+  for (int step = 0; step < kMostDirections && squared > kShare * kShare * size * size; ++step) {
     const DifferencePoint next = search.least(way);
     if (!(dot(way, next.at) < squared * (1 - 16 * kRoundoffF64))) break;
     std::array<double, 4> weight;
