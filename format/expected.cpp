@@ -36,7 +36,7 @@ constexpr Expectation kExpectations[] = {
     {"relative_error", kUnsigned},
     {"absolute_error", kUnsigned},
     {"box", "finite corners, min not above max on any axis"},
-    {"struct_size", "sizeof the struct, set before the call"},
+    {"struct_size", "sizeof the struct, and zeros in newer members"},
     {"planes", "a matrix of finite numbers, and of rows whose sums are finite"},
 };
 

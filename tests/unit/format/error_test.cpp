@@ -87,8 +87,9 @@ TEST(ErrorTable, UnknownNumbersAreInternal) {
 TEST(ErrorMessage, OfAnInvalidQuerySaysWhatIsExpected) {
   EXPECT_EQ(Error(Errc::kInvalidQuery, "radius").message(),
             "invalid_query: radius: expected finite and 0 or more");
-  EXPECT_EQ(Error(Errc::kInvalidQuery, "hit: struct_size").message(),
-            "invalid_query: hit: struct_size: expected sizeof the struct, set before the call");
+  EXPECT_EQ(
+      Error(Errc::kInvalidQuery, "hit: struct_size").message(),
+      "invalid_query: hit: struct_size: expected sizeof the struct, and zeros in newer members");
   EXPECT_EQ(Error(Errc::kInvalidQuery, "results.size()").message(),
             "invalid_query: results.size()");
   EXPECT_EQ(Error(Errc::kInvalidPose, "radius").message(), "invalid_pose: radius");
