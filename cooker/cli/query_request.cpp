@@ -565,8 +565,9 @@ Error explained_pose(std::string_view whose, const Pose& pose) {
   }
   return {
       Errc::kInvalidPose,
-      fmt::format("{} pose {}; expected finite numbers of an invertible map within reach, found {}",
-                  whose, pose_fault(pose), list_of(numbers))};
+      fmt::format(
+          "{} pose {}; expected finite numbers of an invertible map, not too far away, found {}",
+          whose, pose_fault(pose), list_of(numbers))};
 }
 
 Error explained(const Error& error, const QueryRequest& request) {

@@ -28,7 +28,8 @@ struct StatedFaces {
 /// numbers for later checks, and for other formats. O(its size).
 [[nodiscard]] StatedFaces stated_faces(const Json& document);
 
-/// kMeshIndexOutOfRange with the mesh if a scene's counts differ from `stated`.
+/// kMeshIndexOutOfRange with the mesh if a scene has other numbers of faces than `stated`, or more
+/// vertices; fewer are those that faces name.
 Status check_stated_faces(const StatedFaces& stated, const aiScene& scene);
 
 }  // namespace boxtree::cooker

@@ -374,7 +374,7 @@ poses() {
   grep -qF "boxtree: invalid_pose: cube.bxt: $said" err || { cat err; exit 1; }
 }
 poses "pair: the second tree's pose is not invertible: it flattens what it places; expected finite numbers of an invertible "\
-'map within reach, found [1,0,0,0,0,1,0,0,0,0,0,0]' pair cube.bxt --pose 1,0,0,0,0,1,0,0,0,0,0,0
+'map, not too far away, found [1,0,0,0,0,1,0,0,0,0,0,0]' pair cube.bxt --pose 1,0,0,0,0,1,0,0,0,0,0,0
 poses "distance: the second tree's pose is not finite: row 2, column 4 is nan; " distance cube.bxt --pose 0,nan,0
 poses "overlap: the second tree's pose leads too far away: " overlap cube.bxt --pose 0,0,1e300
 
