@@ -183,7 +183,9 @@ class BOXTREE_API Scene {
   [[nodiscard]] std::uint64_t user_data(std::uint32_t instance) const noexcept;
 
   /// A triangle of a face that an answer names, in world coordinates: each corner is brought there
-  /// in double precision. `half` and cost as for Tree::triangle(). Errors: as there and for info().
+  /// in double precision, in the order of the tree: a pose that mirrors turns how it is seen, and
+  /// nothing over (see SceneRayHit). `half` and cost as for Tree::triangle(). Errors: as there and
+  /// for info().
   [[nodiscard]] Result<Triangle> triangle(const SceneFace& face, std::uint32_t half = 0) const;
 
   /// The material of a face that an answer names; kNoMaterial without materials.
@@ -234,7 +236,8 @@ struct SceneFaceOptions {
 };
 
 /// A hit of an instance. `t` counts in units of the ray's direction; point and normal are in world
-/// coordinates, the normal carried there by the pose.
+/// coordinates, the normal carried there by the pose: a pose that mirrors leaves it on its side of
+/// the face, from which the corners of Scene::triangle() are then seen clockwise.
 struct SceneRayHit : RayHit {
   std::uint32_t instance = kNoInstance;  ///< The instance that was hit.
 };
