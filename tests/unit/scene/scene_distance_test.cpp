@@ -187,7 +187,7 @@ TEST_P(SceneDistanceTest, OfABodyIsThatOfBruteForce) {
     const DistanceOptions roughly{.relative_error = unit(), .absolute_error = unit() / 10};
     check(require(distance(scene_, body_.tree, pose, layers, roughly)), expected, roughly, body);
     std::uint64_t before = 0;
-    for (const std::uint64_t budget : {0, 1, 3, 10, 100, 1000}) {
+    for (const std::uint64_t budget : {0u, 1u, 3u, 10u, 100u, 1000u}) {
       const DistanceOptions limited{.node_budget = budget};
       const SceneDistance some = require(distance(scene_, body_.tree, pose, layers, limited));
       check(some, expected, {}, body);
