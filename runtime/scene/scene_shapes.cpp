@@ -110,12 +110,17 @@ struct PointInScene {
   const BoundScene& scene;
   QueryWork& work;
   Eigen::Vector3d point;
+  double scene_margin;
   double best;  // squared
   std::optional<SceneClosestPoint> found = {};
   std::uint32_t found_id = 0;
 
+  void set_bound(NearPointWalk& walk) const noexcept {
+    walk.set_bound(std::sqrt(best), scene_margin);
+  }
   // Takes a nearer point of the instance, if there is one.
-  [[nodiscard]] Errc compare(std::uint32_t instance, const BoundScene::Placed& placed) {
+  [[nodiscard]] Errc compare(NearPointWalk& walk, std::uint32_t instance,
+                             const BoundScene::Placed& placed) {
     const Placement& placement = placed.placement;
     const BoundTree& tree = *placed.tree;
     const PointInTree in_tree(placement, point);
@@ -136,6 +141,7 @@ struct PointInScene {
     found = SceneClosestPoint{{*query.found}, instance};
     found_id = placed.id;
     best = exact.best;
+    set_bound(walk);
     return Errc::kOk;
   }
 };
@@ -227,16 +233,14 @@ ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& poin
   const double most = scene.to_units(max_distance);
   if (!is_within_range(at)) return {Errc::kInvalidQuery, "point"};
   if (!(most >= 0)) return {Errc::kInvalidQuery, "max_distance"};
-  const double error = frame_error(scene, largest_magnitude(at));
-  PointInScene query{scene, work, at, largest_square_within(most)};
+  PointInScene query{scene, work, at, frame_error(scene, largest_magnitude(at)),
+                     largest_square_within(most)};
   const auto compare = [&](NearPointWalk& walk, std::uint32_t instance,
                            const BoundScene::Placed& placed) {
-    const Errc failed = query.compare(instance, placed);
-    walk.set_bound(std::sqrt(query.best), error);
-    return failed;
+    return query.compare(walk, instance, placed);
   };
   NearPointWalk instances({scene, kPointQueries, layers, work}, scene.to_frame(at), compare);
-  instances.set_bound(std::sqrt(query.best), error);
+  query.set_bound(instances);
   const Errc walked = instances.run();
   if (walked != Errc::kOk) return walked;
   if (!query.found) return {};
