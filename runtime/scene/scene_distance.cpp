@@ -16,6 +16,8 @@
 #include "runtime/query/approximation.h"
 #include "runtime/query/distance_query.h"
 #include "runtime/query/invalid_query.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/query/world_metric.h"
 #include "runtime/scene/near_point_walk.h"
 #include "runtime/scene/scene_body.h"
 #include "runtime/scene/scene_walk.h"
@@ -36,17 +38,6 @@ struct NearInstance {
   }
 };
 
-// Of boxes in the scene's frame, where `error` is frame_error() of the first one: that of the other
-// one is larger by the rounding of what is between them at most.
-float least_gap(const Box<double>& a, const Box<double>& b, double error) noexcept {
-  double sum = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double outside = std::max({0.0, a.low[k] - b.high[k], b.low[k] - a.high[k]});
-    sum += outside * outside;
-  }
-  return float_below(std::max(0.0, std::sqrt(sum) * (1 - 64 * kRoundoffF64) - error));
-}
-
 // Finds the instances after `last` that are nearest to a body, as many as there is room for: so
 // many that a body in the midst of thousands has a few turns, and as few as the stack has room for
 // (threads.md). Walks compare boxes with the center of the body's.
@@ -56,16 +47,23 @@ class NearInstances {
 
   NearInstances(const BoundScene& scene, const SceneBody& body, const NearInstance& last,
                 double most, QueryWork& work) noexcept
-      : scene_(scene), body_(body), work_(work), last_(last), most_(most) {
+      : scene_(scene),
+        body_(body),
+        work_(work),
+        last_(last),
+        most_(most),
+        center_(center(body.in_frame)) {
     double squared = 0, magnitude = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const double low = body.in_frame.low[k], high = body.in_frame.high[k];
-      center_[static_cast<Eigen::Index>(k)] = low / 2 + high / 2;
       squared += (high / 2 - low / 2) * (high / 2 - low / 2);
       magnitude = std::max({magnitude, std::abs(low), std::abs(high)});
     }
+    radius_ = std::sqrt(squared) * (1 + 16 * kRoundoffF64);
+    // The rounding of the other box is larger by that of what is between both at most.
     error_ = frame_error(scene, magnitude);
-    reach_ = (std::sqrt(squared) + error_) * (1 + 16 * kRoundoffF64);
+    constexpr double kSure = 1 - 64 * kRoundoffF64;
+    gaps_ = {{kSure, kSure, kSure}, kSure, {error_, error_, error_}};
   }
 
   [[nodiscard]] Errc find() {
@@ -92,7 +90,8 @@ class NearInstances {
     if (instance == body_.instance || placed.tree->empty()) return Errc::kOk;
     const auto bounds = placed.bounds();
     if (!bounds) return Errc::kRecordInvalid;
-    const NearInstance met{least_gap(body_.in_frame, scene_.to_frame(bounds->world), error_),
+    const Box<double> box = scene_.to_frame(bounds->world);
+    const NearInstance met{float_below(std::sqrt(gaps_.squared_distance(body_.in_frame, box))),
                            instance};
     if (!(last_ < met) || met.gap > most_) return Errc::kOk;
     // A heap, the farthest on top.
@@ -110,10 +109,10 @@ class NearInstances {
     }
     return Errc::kOk;
   }
-  // least_gap() takes off up to 64 roundings, and two steps of a float: what is as near as the
-  // farthest that is kept may have a number that comes before its.
+  // A gap is less by up to 64 roundings, two steps of a float and error_ on each axis: what is as
+  // near as the farthest that is kept may have a number that comes before its.
   void set_bound(NearPointWalk& walk) const noexcept {
-    walk.set_bound(most_ * (1 + 8 * kRoundoffF32), reach_ + error_ + kFloatUnderflow);
+    walk.set_bound(most_ * (1 + 8 * kRoundoffF32), radius_ + 2 * error_ + kFloatUnderflow);
   }
 
   const BoundScene& scene_;
@@ -122,8 +121,9 @@ class NearInstances {
   const NearInstance last_;
   double most_;  // instances farther away are not looked for
   Eigen::Vector3d center_;
-  double reach_;  // of a ball around the body's box
+  double radius_;  // of a ball around the body's box
   double error_;
+  GapWeights gaps_;
   std::size_t count_ = 0;
   std::array<NearInstance, kRoom> near_;
 };
