@@ -90,17 +90,6 @@ section sh >"$work/commands.sh"
 (cd "$work/empty" && PATH=$work/moved/bin:$PATH LD_LIBRARY_PATH=$lib bash -eu "$work/commands.sh") >"$work/said" 2>&1 ||
   fail "the guide's commands fail: $(cat "$work/said")"
 tail -1 "$work/said" | diff - <(section text) || fail "the guide's program prints something else (left)"
-# The same program with the two files that need no build system, without the libraries in reach.
-expected=$(section text)
-sed -n '/^## Use it without/,/^## Use it on/p' "$source/docs/GUIDE.md" >"$work/section.md"
-section sh >"$work/commands.sh"
-[ "$(wc -l <"$work/commands.sh")" -eq 3 ] || fail "the guide has other commands: $(cat "$work/commands.sh")"
-mkdir "$work/alone"
-cp "$work/empty/ground.c" "$work/empty/level.bxt" "$work/alone"
-ln -s "$source"/{CMakeLists.txt,cmake,format,runtime} "$work/alone"
-(cd "$work/alone" && bash -eu "$work/commands.sh" && ./ground) >"$work/said" 2>&1 || fail "without a build system: $(cat "$work/said")"
-tail -1 "$work/said" | diff - <(echo "$expected") || fail "without a build system: prints something else (left)"
-sed -n '/^## Use it from C$/,/^## Use it without/p' "$source/docs/GUIDE.md" >"$work/section.md"
 section cmake >"$work/empty/CMakeLists.txt"
 quiet cmake -S "$work/empty" -B "$work/empty/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_C_COMPILER=gcc
 quiet cmake --build "$work/empty/build"

@@ -25,7 +25,8 @@ BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.s
 
 # What this test itself writes.
 WRITTEN_HERE = {"make/", "ninja/", "precompiled/", "program", "program.cpp", "program.out", "query.out"}
-# What uses an installation for C, or the two files in its place, which tests/consumer/c_test.sh runs with what it prints.
+# What uses an installation for C, or the two files in its place, which tests/consumer/c_test.sh and tests/platforms/run.sh
+# run with what it prints.
 USES_C = re.compile(r"^(cc |python3 runtime/c/amalgamate\.py )")
 
 # What programs of the pages use of the application around them.
@@ -116,7 +117,9 @@ class Pages:
 
     def program(self, page, text, line):
         """Compiled; linked and run where it needs nothing of an application, for its output."""
-        includes = "".join(re.findall(r"^#include.*\n", text, re.MULTILINE))
+        # What is precompiled comes first, or is read again.
+        includes = "".join(sorted(re.findall(r"^#include.*\n", text, re.MULTILINE),
+                                  key=lambda include: "<boxtree/boxtree.h>" not in include))
         body = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
         is_whole = "File::open" in body
         code = (includes + AROUND + ("" if is_whole else FREE) +

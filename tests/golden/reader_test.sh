@@ -27,31 +27,29 @@ awk 'NF < 5' "$sheet" >"$work/triangles.obj"
 
 codecs=$("$boxtree" cook --help | tr -s '\n ' ' ' | sed -n 's/.*(auto, \([^)]*\)).*/\1/p' | tr -d ',')
 [ -n "$codecs" ] || fail "no list of codecs in the help of cook"
+meshes=("$@" "$sheet" "$work/triangles.obj")
 for codec in ${codecs//blob-*/}; do # blobs come last
   for geometry in "--exact --for speed" "--exact --for memory" --grid-bits=10 --grid-bits=28; do
-    for mesh in "$@" "$sheet" "$work/triangles.obj"; do
-      # shellcheck disable=SC2086 # several words
-      "$boxtree" cook "$mesh" -o "$work/mesh.bxt" --codec "$codec" $geometry -q
-      read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$mesh, $codec, $geometry"
-      "$boxtree" info "$work/mesh.bxt" --json >"$work/ours"
-      keys='[.trees[] | {name,codec,faces,duplicates,triangles,nodes,depth}]'
-      [ "$(jq -cS "$keys" "$work/theirs")" = "$(jq -cS "$keys" "$work/ours")" ] ||
-        fail "$mesh, $codec, $geometry: the two readers differ"
-    done
+    # shellcheck disable=SC2086 # several words
+    "$boxtree" cook "${meshes[@]}" -o "$work/mesh.bxt" --codec "$codec" $geometry -q
+    read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$codec, $geometry"
+    "$boxtree" info "$work/mesh.bxt" --json >"$work/ours"
+    keys='[.trees[] | {name,codec,faces,duplicates,triangles,nodes,depth}]'
+    jq -cS "$keys" "$work/ours" >"$work/wanted"
+    [ "$(jq length "$work/wanted")" -eq ${#meshes[@]} ] || fail "$codec, $geometry: not ${#meshes[@]} trees"
+    jq -cS "$keys" "$work/theirs" | cmp - "$work/wanted" || fail "$codec, $geometry: the two readers differ"
   done
 done
 
 # Active edges are those of the source in every encoding.
-for mesh in "$sheet" "$work/triangles.obj" "$@"; do
-  : >"$work/first"
-  for encoding in "--codec wide8 --exact --for memory" "--codec plain-f32 --exact" "--codec wide4 --grid-bits 24"; do
-    # shellcheck disable=SC2086 # several words
-    "$boxtree" cook "$mesh" -o "$work/mesh.bxt" --active-edges 5 $encoding -q
-    read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$mesh, $encoding, active edges"
-    jq -c '[.trees[] | [.face_ids, .active_edges] | transpose] | map(sort)' "$work/theirs" >"$work/edges"
-    [ -s "$work/first" ] || cp "$work/edges" "$work/first"
-    cmp "$work/edges" "$work/first" || fail "$mesh, $encoding: other active edges"
-  done
+: >"$work/first"
+for encoding in "--codec wide8 --exact --for memory" "--codec plain-f32 --exact" "--codec wide4 --grid-bits 24"; do
+  # shellcheck disable=SC2086 # several words
+  "$boxtree" cook "${meshes[@]}" -o "$work/mesh.bxt" --active-edges 5 $encoding -q
+  read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$encoding, active edges"
+  jq -c '[.trees[] | [.face_ids, .active_edges] | transpose | sort]' "$work/theirs" >"$work/edges"
+  [ -s "$work/first" ] || cp "$work/edges" "$work/first"
+  cmp "$work/edges" "$work/first" || fail "$encoding: other active edges"
 done
 
 # Materials of faces are those of the source, by runs or by face.

@@ -8,7 +8,7 @@
 #   --count N    queries of each kind and file [15000: 10^5 in all]; those of a number that is not pinned are
 #                compared with what the first platform answered
 #   --long       windows-suites: the tests of queries, scenes, codecs, damaged files and robustness, too
-#   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake;
+#   NAME         c: this machine's, through the shared library; amalgamation: one file, without CMake, as docs/GUIDE.md says;
 #                scalar: without vectors; sse4, avx512: walks by other vectors; avx512-leaves: what every
 #                build does where the processor has AVX-512; both emulated by Bochs where it has not, half an hour for
 #                1000 queries; O0, clang, libcxx: other compilers and libraries;
@@ -342,27 +342,39 @@ platform_farm() {
 }
 # The two files of the amalgamation, in $work/NAME.
 amalgamated() { python3 "$source/runtime/c/amalgamate.py" "$source" "$work/$1"; }
-# With no flag of the project, and with contraction of products and sums where the compiler likes it.
+# As docs/GUIDE.md says, in an empty folder: with no flag of the project, but with contraction of products and sums where the
+# compiler likes it.
 platform_amalgamation() {
-  amalgamated amalgamation
+  local folder=$work/amalgamation commands
+  rm -rf "$folder"
+  mkdir "$folder"
+  # guide SECTION LANGUAGE: the blocks of a section.
+  guide() { python3 "$source/tests/docs/blocks.py" <(sed -n "/^## $1\$/,/^## /p" "$source/docs/GUIDE.md") "$2"; }
+  guide "Use it from C" c >"$folder/ground.c"
+  ln -s "$source"/{CMakeLists.txt,cmake,format,runtime} "$folder"
+  commands=$(guide "Use it without a build system" sh)
+  [ "$(wc -l <<<"$commands")" -eq 3 ] || { fail amalgamation "the guide has other commands: $commands"; return 0; }
+  "$build/boxtree" cook "$source/samples/meshes/level.obj" -o "$folder/level.bxt" -q
   (
-    cd "$work/amalgamation" &&
-    g++ -std=c++20 -O2 -march=native -c boxtree_amalgamated.cpp &&
-    gcc -std=c99 -O2 -I. "$here/digests.c" boxtree_amalgamated.o -o digests -lstdc++ -lm &&
-    g++ -std=c++20 -O2 -DBXT_ONLY_RAYS -c boxtree_amalgamated.cpp -o rays.o &&
-    gcc -std=c99 -O2 -I. "$source/samples/c/first_ray.c" rays.o -o first_ray -lstdc++ -lm
+    c++() { command c++ -march=native "$@"; }
+    cd "$folder" &&
+    eval "${commands//$'\n'/ && }" &&
+    gcc -std=c99 -O2 -Itwo_files "$here/digests.c" boxtree_amalgamated.o -o digests -lstdc++ -lm &&
+    command c++ -std=c++20 -O2 -DBXT_ONLY_RAYS -c two_files/boxtree_amalgamated.cpp -o rays.o &&
+    gcc -std=c99 -O2 -Itwo_files "$source/samples/c/first_ray.c" rays.o -o first_ray -lstdc++ -lm
   ) >"$work/amalgamation.log" 2>&1 || { tail -5 "$work/amalgamation.log"; fail amalgamation "does not compile"; return 0; }
+  (cd "$folder" && ./ground) | tail -1 | diff - <(guide "Use it from C" text) ||
+    { fail amalgamation "the guide's program prints something else (left)"; return 0; }
   # Found by an audit: -ffast-math was refused, its parts were not.
   local part
   for part in -funsafe-math-optimizations -ffinite-math-only -freciprocal-math; do
-    g++ -std=c++20 "$part" -Wfatal-errors -fsyntax-only "$work/amalgamation/boxtree_amalgamated.cpp" 2>"$work/amalgamation.log" &&
+    g++ -std=c++20 "$part" -Wfatal-errors -fsyntax-only "$folder/two_files/boxtree_amalgamated.cpp" 2>"$work/amalgamation.log" &&
       { fail amalgamation "compiles with $part"; return 0; }
     grep -q 'decides by exact arithmetic' "$work/amalgamation.log" || { fail amalgamation "another error of $part"; return 0; }
   done
-  "$build/boxtree" cook "$source/samples/meshes/level.obj" -o "$work/ground.bxt" -q
-  [ "$("$work/amalgamation/first_ray" "$work/ground.bxt")" = "ground at height 0.5, face 2" ] ||
+  [ "$("$folder/first_ray" "$folder/level.bxt")" = "ground at height 0.5, face 2" ] ||
     { fail amalgamation "finds another ground with BXT_ONLY_RAYS"; return 0; }
-  conclude amalgamation "$work/amalgamation/digests"
+  conclude amalgamation "$folder/digests"
 }
 # Node runs what emcc writes; files are those of this machine.
 platform_wasm() {
