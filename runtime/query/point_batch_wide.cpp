@@ -325,8 +325,22 @@ class PointPacketWalk {
 template <class Node>
 Errc walk_packets_of_points(const WideCodec<Node>& codec, PointBatch& batch) {
   PointPacket packet(batch);
-  PointPacketWalk<Node> walk(batch.tree, codec, packet);
-  answer_in_packets(batch.points.size(), packet, walk);
+  // Its nodes take as much of the stack as a point's own walk: they are there while it runs alone.
+  struct Walks {
+    [[nodiscard]] bool was_shared() const { return is_shared; }
+    HWY_NOINLINE Errc run() {
+      PointPacketWalk<Node> walk(tree, codec, packet);
+      const Errc error = walk.run();
+      is_shared = walk.was_shared();
+      return error;
+    }
+    const BoundTree& tree;
+    const WideCodec<Node>& codec;
+    PointPacket& packet;
+    bool is_shared = false;
+  };
+  Walks walks{batch.tree, codec, packet};
+  answer_in_packets(batch.points.size(), packet, walks);
   return Errc::kOk;
 }
 

@@ -6,7 +6,9 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <random>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -66,6 +68,43 @@ TEST_P(Stack, OfQueriesOfATreeIsAsDocumented) {
 TEST_P(Stack, OfPrefetchIsAsDocumented) {
   const test::CookedTree cooked = test::cook_tree(test::terrain(120, 3), GetParam());
   expect_at_most(64, "prefetch", [&] { EXPECT_GT(cooked.tree.prefetch(100), 0u); });
+}
+
+// Found by a newcomer: points far from each other go one by one, and the packet that they were to
+// go in took its stack besides, 121 KB of 96.
+TEST_P(Stack, OfBatchesThatShareLittleIsAsDocumented) {
+  const test::CookedTree cooked = test::cook_tree(test::terrain(60, 3), GetParam());
+  const Tree& tree = cooked.tree;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> diagonals(-1, 1);
+  const auto anywhere = [&]() -> Eigen::Vector3d {
+    const Eigen::Vector3d away(diagonals(random), diagonals(random), diagonals(random));
+    return tree.bounds().center() + tree.bounds().diagonal().norm() * away;
+  };
+  constexpr std::size_t kCount = 1000;
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Ray> rays;
+  std::vector<Sphere> spheres;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    points.push_back(anywhere());
+    rays.push_back({points[i], anywhere() - points[i]});
+    spheres.push_back({points[i], 0.1});
+    boxes.emplace_back(points[i]);
+    boxes[i].extend(anywhere());
+  }
+  std::vector<PointResult> nearest(kCount);
+  std::vector<RayResult> hits(kCount);
+  std::vector<VisitResult> visits(kCount);
+  const auto all = [](std::size_t, const FaceRef&) { return true; };
+  expect_at_most(96, "closest_points",
+                 [&] { EXPECT_TRUE(closest_points(tree, points, nearest).ok()); });
+  expect_at_most(96, "closest_hits", [&] { EXPECT_TRUE(closest_hits(tree, rays, hits).ok()); });
+  expect_at_most(96, "any_hits", [&] { EXPECT_TRUE(any_hits(tree, rays, hits).ok()); });
+  expect_at_most(96, "overlap_spheres",
+                 [&] { EXPECT_TRUE(overlap_spheres(tree, spheres, visits, all).ok()); });
+  expect_at_most(96, "overlap_boxes",
+                 [&] { EXPECT_TRUE(overlap_boxes(tree, boxes, visits, all).ok()); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Codecs, Stack, testing::ValuesIn(test::all_codecs()), test::test_name);
