@@ -290,24 +290,32 @@ class Cook {
 
   // Trees that share their geometry store are chosen together.
   Status choose_encodings() {
+    std::vector<bool> shares;
+    for (std::size_t t = 0; t < tried_.size(); ++t) shares.push_back(shares_store(t));
+    const Status chosen = choose_encodings(shares);
+    if (chosen || chosen.code() != Errc::kBudgetUnreachable) return chosen;
+    return in_budget(budgets_unreachable(contests_, wishes_, shares));
+  }
+
+  Status choose_encodings(const std::vector<bool>& shares) {
     chosen_.resize(tried_.size());
     std::vector<std::size_t> sharing;
     std::vector<Contest> contests;
     std::vector<Wishes> wishes;
     for (std::size_t t = 0; t < tried_.size(); ++t) {
-      if (shares_store(t)) {
+      if (shares[t]) {
         sharing.push_back(t);
-        contests.push_back(std::move(contests_[t]));
+        contests.push_back(contests_[t]);
         wishes.push_back(wishes_[t]);
         continue;
       }
       const auto chosen = choose(std::span(&contests_[t], 1), wishes_[t]);
-      if (!chosen) return in_budget(in_mesh(mesh_of_tree_[t], chosen.error()));
+      if (!chosen) return in_mesh(mesh_of_tree_[t], chosen.error());
       chosen_[t] = chosen->front();
     }
     if (sharing.empty()) return {};
     const auto chosen = choose_each(contests, wishes);
-    if (!chosen) return in_budget(chosen.error());
+    if (!chosen) return chosen.error();
     for (std::size_t i = 0; i < sharing.size(); ++i) {
       chosen_[sharing[i]] = (*chosen)[i];
       contests_[sharing[i]] = std::move(contests[i]);

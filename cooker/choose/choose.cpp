@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "cooker/text/at_most.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -72,44 +74,107 @@ std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Rated>
   return best;
 }
 
-// The fewest bytes and the least slowdown possible for a tree, each with its candidate.
-std::string nearest_of(const Contest& tree, const std::vector<Rated>& rated) {
-  std::optional<std::size_t> smallest, fastest;
-  for (std::size_t i = 0; i < rated.size(); ++i) {
-    if (!rated[i].eligible) continue;
-    if (!smallest || rated[i].bytes < rated[*smallest].bytes) smallest = i;
-    if (!fastest || rated[i].slowdown < rated[*fastest].slowdown) fastest = i;
+// A candidate for each tree of a file, and the trees whose own are the largest and the slowest.
+struct Reached {
+  std::vector<std::size_t> candidate;
+  std::size_t largest = 0, slowest = 0;
+};
+
+// What all trees of a file can keep to.
+class Reachable {
+ public:
+  using Number = double Rated::*;
+
+  Reachable(std::span<const Contest> trees, const std::vector<std::vector<Rated>>& rated,
+            const std::vector<bool>& shares)
+      : trees_(trees), rated_(rated), shares_(shares) {}
+
+  // The candidates whose largest `least` is the least possible, while none of the other number
+  // exceeds `limit`. Empty if there are none.
+  [[nodiscard]] std::optional<Reached> minimum(Number least, double limit) const {
+    Reached out;
+    out.candidate.resize(trees_.size());
+    std::vector<std::size_t> sharing;
+    for (std::size_t t = 0; t < trees_.size(); ++t) {
+      if (shares_[t]) {
+        sharing.push_back(t);
+      } else if (!minimum_of({&t, 1}, least, limit, out)) {
+        return std::nullopt;
+      }
+    }
+    if (!sharing.empty() && !minimum_of(sharing, least, limit, out)) return std::nullopt;
+    for (std::size_t t = 0; t < trees_.size(); ++t) {
+      if (of(out, t).bytes > of(out, out.largest).bytes) out.largest = t;
+      if (of(out, t).slowdown > of(out, out.slowest).slowdown) out.slowest = t;
+    }
+    return out;
   }
-  const auto told = [&](std::size_t i) {
-    return fmt::format("{} with geometry {} takes {:.2f} B/tri, slowdown {:.2f}",
-                       codec_name(tree.candidates[i].codec),
-                       geometry_name(tree.candidates[i].geometry), rated[i].bytes,
-                       rated[i].slowdown);
-  };
-  return smallest == fastest ? told(*smallest) : told(*smallest) + "; " + told(*fastest);
+
+  [[nodiscard]] const Rated& of(const Reached& reached, std::size_t tree) const {
+    return rated_[tree][reached.candidate[tree]];
+  }
+
+ private:
+  // Of trees that share a store.
+  [[nodiscard]] bool minimum_of(std::span<const std::size_t> group, Number least, double limit,
+                                Reached& out) const {
+    const Number other = least == &Rated::bytes ? &Rated::slowdown : &Rated::bytes;
+    double least_of_group = kInfinite;
+    for (const Positioning positioning : kPositionings) {
+      std::vector<std::size_t> chosen;
+      double most = 0;
+      for (const std::size_t t : group) {
+        std::optional<std::size_t> best;
+        for (std::size_t i = 0; i < rated_[t].size(); ++i) {
+          const Rated& each = rated_[t][i];
+          const bool fits = positioning_of(trees_[t].candidates[i].geometry) == positioning;
+          if (!fits || !each.eligible || each.*other > limit) continue;
+          if (!best || each.*least < rated_[t][*best].*least) best = i;
+        }
+        if (!best) break;
+        chosen.push_back(*best);
+        most = std::max(most, rated_[t][*best].*least);
+      }
+      if (chosen.size() < group.size() || most >= least_of_group) continue;
+      least_of_group = most;
+      for (std::size_t i = 0; i < group.size(); ++i) out.candidate[group[i]] = chosen[i];
+    }
+    return least_of_group < kInfinite;
+  }
+
+  std::span<const Contest> trees_;
+  const std::vector<std::vector<Rated>>& rated_;
+  const std::vector<bool>& shares_;
+};
+
+// "wide4 with geometry grid takes 6.885 B/tri, slowdown 1.1", of several trees the one that needs
+// most of `least`; numbers are rounded up, so that they can be typed as budgets. `tells_others`:
+// the most of the other number, too, where another tree has it.
+std::string in_words(std::span<const Contest> trees, const Reachable& reachable,
+                     const Reached& reached, Reachable::Number least, bool tells_others) {
+  constexpr int kDigits = 4;
+  const std::size_t t = least == &Rated::bytes ? reached.largest : reached.slowest;
+  const Candidate& candidate = trees[t].candidates[reached.candidate[t]];
+  const Rated& own = reachable.of(reached, t);
+  const double bytes = reachable.of(reached, reached.largest).bytes;
+  const double slowdown = reachable.of(reached, reached.slowest).slowdown;
+  std::string text = fmt::format("{}{} with geometry {} takes {} B/tri, slowdown {}",
+                                 trees.size() > 1 ? trees[t].mesh + ": " : "",
+                                 codec_name(candidate.codec), geometry_name(candidate.geometry),
+                                 at_most(own.bytes, kDigits), at_most(own.slowdown, kDigits));
+  if (!tells_others) return text;
+  if (bytes > own.bytes) {
+    text += fmt::format(", others up to {} B/tri", at_most(bytes, kDigits));
+  } else if (slowdown > own.slowdown) {
+    text += fmt::format(", others up to {}", at_most(slowdown, kDigits));
+  }
+  return text;
 }
 
 // The remedy where bytes are too few.
 constexpr const char* kFewerBytes =
-    "; fewer bytes take a tolerance (cook --tolerance LENGTH, tolerance of a profile), by which "
-    "vertices may move";
-
-Error refusal(const Contest& tree, const std::vector<Rated>& rated, const Wishes& wishes) {
-  const bool any_eligible =
-      std::any_of(rated.begin(), rated.end(), [](const Rated& each) { return each.eligible; });
-  if (!any_eligible) return {Errc::kInternal, "no encoding passes its gates"};
-  std::string wanted;
-  if (wishes.max_bytes_per_triangle) {
-    wanted += fmt::format("at most {} B/tri", *wishes.max_bytes_per_triangle);
-  }
-  if (wishes.max_slowdown) {
-    wanted += fmt::format("{}a slowdown of at most {}", wanted.empty() ? "" : " and ",
-                          *wishes.max_slowdown);
-  }
-  return {Errc::kBudgetUnreachable, "wanted " + wanted + "; " + nearest_of(tree, rated) +
-                                        fmt::format(" (slowdown: {})", kSlowdownMeaning) +
-                                        (wishes.max_bytes_per_triangle ? kFewerBytes : "")};
-}
+    "; fewer bytes take a tolerance, or a larger one, by which vertices may move (cook --tolerance "
+    "LENGTH in place of --exact, --grid-bits and --grid-step; tolerance of a profile)";
 
 std::string reason(const Candidate& candidate, const Rated& rated, const Candidate& chosen,
                    const Rated& chosen_rated, const Wishes& wishes) {
@@ -239,15 +304,7 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     }
   }
   if (chosen.empty()) {
-    // Report the tree for which no candidate is possible. If every tree has one, no store suits all
-    // trees; then report the first tree.
-    std::size_t worst = 0;
-    for (std::size_t t = trees.size(); t-- > 0;) {
-      const bool possible = std::any_of(rated[t].begin(), rated[t].end(),
-                                        [](const Rated& j) { return j.score != kInfinite; });
-      if (!possible) worst = t;
-    }
-    return refusal(trees[worst], rated[worst], wishes[worst]);
+    return budgets_unreachable(trees, wishes, std::vector<bool>(trees.size(), true));
   }
   for (std::size_t t = 0; t < trees.size(); ++t) {
     for (std::size_t i = 0; i < trees[t].candidates.size(); ++i) {
@@ -259,6 +316,51 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     }
   }
   return chosen;
+}
+
+Error budgets_unreachable(std::span<const Contest> trees, std::span<const Wishes> wishes,
+                          const std::vector<bool>& shares) {
+  std::vector<std::vector<Rated>> rated;
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    rated.push_back(rate(trees[t], wishes[t]));
+    const bool any_eligible = std::any_of(rated[t].begin(), rated[t].end(),
+                                          [](const Rated& each) { return each.eligible; });
+    if (!any_eligible) {
+      return {Errc::kInternal,
+              (trees.size() > 1 ? trees[t].mesh + ": " : "") + "no encoding passes its gates"};
+    }
+  }
+  const Reachable reachable(trees, rated, shares);
+  const std::optional<double> bytes = wishes.front().max_bytes_per_triangle;
+  const std::optional<double> slowdown = wishes.front().max_slowdown;
+  std::vector<std::string> nearest;
+  const auto tell = [&](Reachable::Number least, double limit, bool tells_others) {
+    const std::optional<Reached> reached = reachable.minimum(least, limit);
+    if (reached) nearest.push_back(in_words(trees, reachable, *reached, least, tells_others));
+  };
+  // With the other budget kept; where neither can be met, without.
+  if (bytes) tell(&Rated::bytes, slowdown.value_or(kInfinite), false);
+  if (slowdown) tell(&Rated::slowdown, bytes.value_or(kInfinite), false);
+  if (nearest.empty()) {
+    tell(&Rated::bytes, kInfinite, true);
+    tell(&Rated::slowdown, kInfinite, true);
+  }
+  if (nearest.empty()) {
+    return {Errc::kBudgetUnreachable, "no geometry store is possible for all trees of the file"};
+  }
+  std::string wanted;
+  if (bytes) wanted += fmt::format("at most {} B/tri", *bytes);
+  if (slowdown) {
+    wanted += fmt::format("{}a slowdown of at most {}", bytes ? " and " : "", *slowdown);
+  }
+  const bool is_external = std::all_of(trees.begin(), trees.end(), [](const Contest& tree) {
+    return std::all_of(tree.candidates.begin(), tree.candidates.end(), [](const Candidate& each) {
+      return each.geometry == GeometryId::kExternal;
+    });
+  });
+  return {Errc::kBudgetUnreachable,
+          fmt::format("wanted {}; {} (slowdown: {}){}", wanted, fmt::join(nearest, "; "),
+                      kSlowdownMeaning, bytes && !is_external ? kFewerBytes : "")};
 }
 
 }  // namespace boxtree::cooker

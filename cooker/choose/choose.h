@@ -58,10 +58,11 @@ struct Contest {
   std::vector<NotTried> not_tried;
   QueryKinds queries = kAllQueries;  // that count for the choice
   QueryCost baseline{};              // of wide8 with arrays, whether that was tried or not
+  std::string mesh;                  // its name, for messages
 };
 
-/// Candidate::rejected of what a budget excludes: its bytes per triangle, its slowdown, the bytes of
-/// the file.
+/// Candidate::rejected of what a budget excludes: its bytes per triangle, its slowdown, the bytes
+/// of the file.
 inline constexpr const char* kOverBytes = "over the budget of bytes";
 inline constexpr const char* kOverTime = "over the budget of time";
 inline constexpr const char* kOverFileBytes = "over the budget of the file's bytes";
@@ -91,12 +92,19 @@ inline constexpr const char* kSlowdownMeaning =
 /// Chooses one candidate for each of the trees that share a file, all with positions of the source
 /// or all on the grid, so that surfaces that touch still touch. Fills Candidate::rejected of the
 /// others; ties go to the earlier candidate. Returns the index of each tree's choice. Errors:
-/// kInternal if nothing may be chosen; kBudgetUnreachable with the nearest possible values.
+/// kInternal if nothing may be chosen; budgets_unreachable().
 Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& wishes);
 
 /// The same with separate wishes for each tree. The common store is the one with the least total
 /// score; scores are relative to the best of each tree.
 Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
                                              std::span<const Wishes> wishes);
+
+/// Why trees of one file cannot be chosen for within their budgets, with the nearest that they can:
+/// numbers that serve as budgets as they are printed. `shares`: which trees share their store.
+/// Preconditions: as many of each; every tree has the same budgets.
+[[nodiscard]] Error budgets_unreachable(std::span<const Contest> trees,
+                                        std::span<const Wishes> wishes,
+                                        const std::vector<bool>& shares);
 
 }  // namespace boxtree::cooker

@@ -239,6 +239,7 @@ class Search {
         queries_(choice_queries(bounds_of(mesh))) {
     out_.contest.triangles = static_cast<std::uint32_t>(mesh.triangle_count());
     out_.contest.queries = options.wishes.queries;
+    out_.contest.mesh = mesh.name;
   }
 
   Result<TriedTree> run() {
