@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -159,14 +160,17 @@ Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& ch
   const int bits = extent - step_exponent;
   const double half = half_extent(bounds);
   if (half > 0 && bits > kMaxGridBits) {
-    const double possible = std::ldexp(1.0, extent - kMaxGridBits);
-    const std::string requested =
-        choice.step_exponent ? fmt::format("a step of 2^{}", *choice.step_exponent)
-                             : fmt::format("a tolerance of {}", choice.tolerance.value_or(0));
+    const int least = extent - kMaxGridBits;
+    const auto [requested, possible] =
+        choice.step_exponent
+            ? std::pair(fmt::format("a step of 2^{}", *choice.step_exponent),
+                        fmt::format("a step of 2^{}", least))
+            : std::pair(fmt::format("a tolerance of {}", choice.tolerance.value_or(0)),
+                        fmt::format("a tolerance of {}", 0.8661 * std::ldexp(1.0, least)));
     return Error{Errc::kMeshUnsupported,
                  fmt::format("{} needs a grid of {} bits over an extent of {}; at most {} are "
-                             "possible, a tolerance of {}",
-                             requested, bits, 2 * half, kMaxGridBits, 0.8661 * possible)};
+                             "possible, {}",
+                             requested, bits, 2 * half, kMaxGridBits, possible)};
   }
   return grid_over(bounds, step_exponent);
 }

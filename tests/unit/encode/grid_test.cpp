@@ -310,6 +310,9 @@ TEST(Grid, HasTheStepThatIsRequested) {
   EXPECT_EQ(finer.code(), Errc::kMeshUnsupported);
   EXPECT_NE(finer.error().detail.find("a step of 2^-28 needs a grid of 31 bits"), std::string::npos)
       << finer.error().detail;
+  // Found by a newcomer: what is possible was told as a tolerance, which is another option.
+  EXPECT_TRUE(finer.error().detail.ends_with("at most 30 are possible, a step of 2^-27"))
+      << finer.error().detail;
 }
 
 // Two meshes that touch along an irrational line, cooked into one grid, still share their vertices.
