@@ -182,7 +182,7 @@ class World {
     std::uint64_t first = 0, skipped = 0;
     for (const fs::path& source : options_.sources) {
       announce(progress_, fmt::format("{} {}", step, source.filename().string()));
-      const WorldReading reading{options_.memory / 2, options_.skip_bad};
+      const WorldReading reading{options_.memory, options_.skip_bad};
       const Result<WorldFaces> found =
           read_world_faces(source, reading, [&](const WorldFace& face) -> Status {
             const std::uint64_t id = first + face.id;

@@ -331,12 +331,12 @@ Result<WorldFaces> read_imported(const fs::path& path, const WorldReading& readi
                                  const WorldFaceSink& sink) {
   CookJob job;
   job.inputs = {path};
-  if (const std::uint64_t expected = estimated_memory(job); expected > reading.memory) {
+  if (const std::uint64_t expected = estimated_memory(job); expected > reading.memory / 2) {
     return Error{Errc::kMeshUnsupported,
-                 fmt::format("{}: it is read into memory and takes about {} bytes, {} are allowed; "
-                             "binary PLY and STL files are read as streams: convert it, or give "
-                             "more --memory",
-                             path.string(), expected, reading.memory)};
+                 fmt::format("{}: it is read into memory and takes about {} bytes, for which half "
+                             "of the {} of --memory is there; binary PLY and STL files are read as "
+                             "streams: convert it, or give --memory {}",
+                             path.string(), expected, reading.memory, 2 * expected)};
   }
   const Result<Imported> imported =
       import_mesh(path, {.skip_bad = reading.skip_bad, .command = "tile", .try_first = true});
@@ -387,7 +387,7 @@ Result<WorldFaces> read_world_faces(const fs::path& path, const WorldReading& re
   layout.header = std::move(*header);
   if (Status status = find_ply_parts(layout); !status) return in_file(path, status.error());
   if (!is_streamable(layout)) return read_imported(path, reading, sink);
-  return read_ply(*stream, layout, path, reading.memory, bad, sink);
+  return read_ply(*stream, layout, path, reading.memory / 2, bad, sink);
 }
 
 }  // namespace boxtree::cooker

@@ -27,7 +27,7 @@ using WorldFaceSink = std::function<Status(const WorldFace&)>;
 
 /// How a source is read.
 struct WorldReading {
-  std::uint64_t memory = 0;  ///< [bytes] The most that it takes.
+  std::uint64_t memory = 0;  ///< [bytes] --memory of the command, of which reading takes half.
   bool skip_bad = false;     ///< Leave out what import_mesh calls bad; others keep their numbers.
 };
 
