@@ -274,6 +274,10 @@ int run(const BenchArguments& arguments) {
   TimedWork timed_work;
   for (const std::filesystem::path& path : arguments.files) {
     const Result<File> file = map_file(path);
+    if (file.code() == Errc::kFeatureUnsupported && open_file(path)) {
+      return fail({file.code(), path.string() + ": it is a blob, and bench times files that are "
+                                                "mapped; cook it with another codec"});
+    }
     if (!file) return fail(file.error());
     for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
       const Result<Tree> tree = Tree::bind(*file, i);

@@ -277,7 +277,11 @@ int cook_manifest(const ManifestRun& run) {
       return usage("cook: --journal " + status.error().detail);
     }
     Result<Journal> opened = Journal::open(path);
-    if (!opened) return fail(opened.error());
+    if (!opened) {
+      Error error = opened.error();
+      if (run.farm.journal.empty()) error.detail += "; --journal FILE names another place for it";
+      return fail(error);
+    }
     journal.emplace(std::move(*opened));
   }
   int status = 0;

@@ -324,8 +324,11 @@ std::string expectation(std::string_view kind, std::string_view argument) {
     return fmt::format("direction: expected finite{}",
                        kind == RayRequest::kKind ? " and not zero" : "");
   }
-  // t_min is 0 here; the library knows no merge.
-  if (argument == "t_max" || argument == "merge") {
+  if (argument == "t_max" && kind == RayRequest::kKind) {
+    return "t_max: expected t_min [0] or more";
+  }
+  // The library knows no merge.
+  if (argument == "t_min" || argument == "t_max" || argument == "merge") {
     return fmt::format("{}: expected 0 or more", argument);
   }
   const std::string_view expected = expected_of(argument);

@@ -58,6 +58,7 @@ struct RayRequest {
   void describe(Fields& fields) {
     fields.required("origin", ray.origin, "Where it starts");
     fields.required("direction", ray.direction, "Where it goes; t counts in its length");
+    fields.optional("t_min", ray.t_min, "Where it begins, as t [0]");
     fields.optional("t_max", ray.t_max, "Where it ends, as t [nowhere]");
     fields.optional("any", any, "Any hit, not the closest");
     fields.optional("all", all, "All hits, in the order of t, then of faces");

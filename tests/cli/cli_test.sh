@@ -339,8 +339,12 @@ rejects() {
 }
 rejects 'ray: direction: expected finite and not zero, found origin [0.5,0,9], direction [0,0,0]' \
   ray --origin 0.5,0,9 --direction 0,0,0
-rejects 'ray: t_max: expected 0 or more, found origin [0,0,0], direction [0,0,1], t_max -1' \
+rejects 'ray: t_max: expected t_min [0] or more, found origin [0,0,0], direction [0,0,1], t_max -1' \
   ray --origin 0,0,0 --direction 0,0,1 --t-max=-1
+rejects 'ray: t_max: expected t_min [0] or more, found origin [0,0,0], direction [0,0,1], t_min 2, t_max 1' \
+  ray --origin 0,0,0 --direction 0,0,1 --t-max 1 --t-min 2
+rejects 'ray: t_min: expected 0 or more, found origin [0,0,0], direction [0,0,1], t_min -1' \
+  ray --origin 0,0,0 --direction 0,0,1 --t-min=-1
 rejects 'ray: origin: expected a finite point, at most 2^185 mesh extents away, found origin [0,0,1e+100], ' \
   ray --origin 0,0,1e100 --direction 0,0,1
 rejects 'box: expected finite corners, min not above max on any axis, found min [1,0,0], max [0,1,1]' \
@@ -685,6 +689,14 @@ for number in 0x10 +1 1e400 1e-400 '1 ' ''; do
   misvalued "usage: query ray: --t-max: expected a number, found \"$number\"" query cube.bxt ray --origin 0,0,9 --direction 0,0,-1 --t-max "$number"
 done
 expect 0 "$boxtree" query cube.bxt ray --origin 0,0,9 --direction 0,0,-1 --t-max inf
+# What a ray leaves behind, by a newcomer's wish: it begins at --t-min.
+expect 0 "$boxtree" query cube.bxt ray --origin 0.5,0.25,9 --direction 0,0,-1
+first=$(sed -n 's/^t: //p' out)
+expect 0 "$boxtree" query cube.bxt ray --origin 0.5,0.25,9 --direction 0,0,-1 --t-min "$(jq -n "$first + 0.5")"
+jq -en "$(sed -n 's/^t: //p' out) == $first + 1"
+printf '{"kind":"ray","origin":[0.5,0.25,9],"direction":[0,0,-1],"t_min":%s}\n' "$(jq -n "$first + 0.5")" >t_min.jsonl
+expect 0 "$boxtree" query cube.bxt --batch t_min.jsonl
+jq -e ".t == $first + 1" out
 misvalued 'invalid_query: cube.bxt: collide: merge: expected 0 or more, found at [0,0,0], sphere 1, merge -1' query cube.bxt collide --sphere 1 --at 0,0,0 --merge -1
 for value in 1.5 -1 x; do
   misvalued "usage: query point: --budget: expected a whole number of 0 or more, found \"$value\"" query cube.bxt point --at 0,0,0 --budget=$value
@@ -1051,7 +1063,7 @@ names 'point: "max-distance": expected a number, found "x"' '{"kind":"point","at
 names 'expected a JSON object, found no JSON at byte 31' '{"kind":"point","at":[1,0,0]} x'
 names 'expected a JSON object, found [1]' '[1]'
 names 'expected a JSON object of finite numbers, found one beyond what a double holds' '{"kind":"point","at":[1e999,0,0]}'
-names "ray: expected the keys origin, direction, t_max, any, all, back_faces, move or kind, found \"--origin\"; did you mean 'origin'?" '{"kind":"ray","--origin":[0,0,9],"direction":[0,0,-1]}'
+names "ray: expected the keys origin, direction, t_min, t_max, any, all, back_faces, move or kind, found \"--origin\"; did you mean 'origin'?" '{"kind":"ray","--origin":[0,0,9],"direction":[0,0,-1]}'
 names '"t_max": expected once, found twice: - and _ are the same' \
   '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1],"t-max":1,"t_max":2}'
 names '"origin": expected once, found twice' '{"kind":"ray","origin":[0,0,9],"origin":[0,0,8],"direction":[0,0,-1]}'
@@ -1224,6 +1236,8 @@ misvalued 'tree_index: both.bxt: no tree is called "nobody"; expected cube or fl
 for method in lzma zstd; do
   expect 0 "$boxtree" cook cube.obj -o blob.bxt --codec "blob-$method"
   expect 0 "$boxtree" verify blob.bxt
+  expect 1 "$boxtree" bench blob.bxt
+  grep -q '^boxtree: feature_unsupported: blob.bxt: it is a blob, and bench times files that are mapped; cook it' err
   expect 0 "$boxtree" info blob.bxt --json
   same "$(jq -r '.trees[0].codec' out)" plain-f32
   same "$(jq -c '.blob.file_bytes < .blob.resident_bytes' out)" true

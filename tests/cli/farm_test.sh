@@ -174,6 +174,9 @@ grep -q '^boxtree: no_faces: bad.jsonl:3: in/bad.obj' err
 sed 's|in/m4.obj|in/absent.obj|' bad.jsonl >absent.jsonl
 expect 2 "$boxtree" cook --manifest absent.jsonl --json --journal absent.done
 same "$(jq -c 'select(.error) | [.line, .key == null, .error.may_pass]' out | sort | xargs)" '[3,false,false] [4,true,true]'
+# A manifest in a pipe has no place beside it.
+expect 2 "$boxtree" cook --manifest <(printf '')
+grep -q '^boxtree: write_failed: /dev/fd/.*; --journal FILE names another place for it$' err
 # Found by a newcomer: the journal was written behind a mesh, or behind the manifest.
 cp in/m1.obj kept.obj
 expect 1 "$boxtree" cook --manifest absent.jsonl --journal kept.obj
