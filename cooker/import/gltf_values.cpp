@@ -2,6 +2,7 @@
 // One function for each kind of object, in the order in which they refer to each other.
 #include "cooker/import/gltf_values.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -49,7 +50,29 @@ class ValueChecker {
     if (!scenes.empty() && !index(document_, "scene", "scenes")) return false;
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       place_ = fmt::format("scene {}", i);
-      if (!is_object(scenes[i]) || !indices(scenes[i], "nodes", "nodes")) return false;
+      if (!is_object(scenes[i]) || !each_once(scenes[i], "nodes")) return false;
+    }
+    return true;
+  }
+
+  // What has a parent would be placed twice.
+  bool check_roots() {
+    const Json& nodes = array_at(document_, "nodes");
+    std::vector<std::size_t> parent(nodes.size(), nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      for (const Json& child : array_at(nodes[i], "children")) {
+        parent[child.get<std::size_t>()] = i;
+      }
+    }
+    const Json& scenes = array_at(document_, "scenes");
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      for (const Json& root : array_at(scenes[i], "nodes")) {
+        const std::size_t above = parent[root.get<std::size_t>()];
+        if (above == nodes.size()) continue;
+        place_ = fmt::format("scene {}", i);
+        return fail("nodes", "nodes without a parent",
+                    fmt::format("{}, a child of {}", root.get<std::size_t>(), above));
+      }
     }
     return true;
   }
@@ -59,13 +82,13 @@ class ValueChecker {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const Json& node = nodes[i];
       place_ = fmt::format("node {}", i);
-      if (!(is_object(node) && indices(node, "children", "nodes") &&
-            index(node, "mesh", "meshes") && numbers(node, "translation", 3) &&
-            numbers(node, "scale", 3) && rotation(node) && matrix(node))) {
+      if (!(is_object(node) && each_once(node, "children") && index(node, "mesh", "meshes") &&
+            numbers(node, "translation", 3) && numbers(node, "scale", 3) && rotation(node) &&
+            matrix(node))) {
         return false;
       }
     }
-    return true;
+    return check_roots();
   }
 
   bool rotation(const Json& node) {
@@ -84,6 +107,10 @@ class ValueChecker {
     if (!numbers(node, "matrix", 16)) return false;
     const Json* const matrix = node.find("matrix");
     if (matrix == nullptr) return true;
+    for (const char* part : {"translation", "rotation", "scale"}) {
+      if (node.contains(part))
+        return fail("matrix", "a matrix alone", fmt::format("a {}, too", part));
+    }
     for (std::size_t column = 0; column < 4; ++column) {
       const double last = (*matrix)[4 * column + 3].get<double>();
       if (!is_in_last_row(last, column)) {
@@ -127,14 +154,17 @@ class ValueChecker {
                                          check_accessor(primitive, "indices", 1)));
   }
 
-  // Of strips and fans assimp subtracts two.
+  // Of strips and fans assimp subtracts two; what is left of triangles it drops.
   bool has_corners(const Json& primitive) {
     const std::uint64_t mode = number_at(primitive, "mode", kModeTriangles);
-    if (mode <= kModeTriangles) return true;
+    if (mode < kModeTriangles) return true;
     const Json& accessor = primitive.contains("indices")
                                ? accessor_at(document_, primitive, "indices")
                                : positions_of(document_, primitive);
     const std::uint64_t corners = number_at(accessor, "count", 0);
+    if (mode == kModeTriangles) {
+      return corners % 3 == 0 || fail("", "a multiple of 3 corners", std::to_string(corners));
+    }
     return corners >= 3 || fail("", "3 or more corners of a strip or fan", std::to_string(corners));
   }
 
@@ -256,12 +286,17 @@ class ValueChecker {
     const Json* const number = object.find(key);
     return number == nullptr || is_index(key, *number, list);
   }
-  bool indices(const Json& object, const char* key, const char* list) {
+  // A list of nodes, none of them twice.
+  bool each_once(const Json& object, const char* key) {
     if (!is_list(object, key)) return false;
+    std::vector<std::uint64_t> listed;
     for (const Json& each : array_at(object, key)) {
-      if (!is_index(key, each, list)) return false;
+      if (!is_index(key, each, "nodes")) return false;
+      listed.push_back(each.get<std::uint64_t>());
     }
-    return true;
+    std::sort(listed.begin(), listed.end());
+    const auto twice = std::adjacent_find(listed.begin(), listed.end());
+    return twice == listed.end() || fail(key, "each node once", fmt::format("{} twice", *twice));
   }
   bool is_index(const char* key, const Json& number, const char* list) {
     const std::size_t size = array_at(document_, list).size();

@@ -43,9 +43,17 @@ std::string fault(const char* place, const char* value) {
   return fault(json);
 }
 
+// Of the document with a matrix in place of node 0's rotation.
+std::string with_matrix(const char* matrix) {
+  Library json = two_triangles();
+  json["nodes"][0].erase("rotation");
+  json["nodes"][0]["matrix"] = Library::parse(matrix);
+  return fault(json);
+}
+
 TEST(GltfValues, TheSpecificationsArePassed) {
   EXPECT_EQ(fault(two_triangles()), "");
-  EXPECT_EQ(fault("/nodes/0/matrix", "[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]"), "");
+  EXPECT_EQ(with_matrix("[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]"), "");
   EXPECT_EQ(fault("/meshes/0/primitives/0/mode", "6"), "");
   Library compressed = two_triangles();
   for (Library& accessor : compressed["accessors"]) accessor.erase("bufferView");
@@ -90,10 +98,24 @@ TEST(GltfValues, PlacesAreOfTheirNumbers) {
             "node 0: rotation: expected a quaternion of length 1, found length 2");
   EXPECT_EQ(fault("/nodes/0/rotation", "[0,0,0,0]"),
             "node 0: rotation: expected a quaternion of length 1, found length 0");
-  EXPECT_EQ(fault("/nodes/0/matrix", "[1,0,0,0, 0,1,0,0, 0,0,1,0]"),
+  EXPECT_EQ(with_matrix("[1,0,0,0, 0,1,0,0, 0,0,1,0]"),
             "node 0: matrix: expected 16 numbers, found a list of 12");
-  EXPECT_EQ(fault("/nodes/0/matrix", "[1,0,0,0, 0,1,0,0, 0,0,1,-0.5, 0,0,0,1]"),
+  EXPECT_EQ(with_matrix("[1,0,0,0, 0,1,0,0, 0,0,1,-0.5, 0,0,0,1]"),
             "node 0: matrix: expected 0, 0, 0, 1 as its last row, found -0.5 in column 2");
+}
+
+// Found by a newcomer: assimp takes the matrix, and places what is named twice in one place twice.
+TEST(GltfValues, NodesDoNotContradictThemselves) {
+  EXPECT_EQ(fault("/nodes/0/matrix", "[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]"),
+            "node 0: matrix: expected a matrix alone, found a rotation, too");
+  EXPECT_EQ(fault("/scenes/0/nodes", "[0,0]"),
+            "scene 0: nodes: expected each node once, found 0 twice");
+  EXPECT_EQ(fault("/nodes/0/children", "[1,1]"),
+            "node 0: children: expected each node once, found 1 twice");
+  EXPECT_EQ(fault("/scenes/0/nodes", "[0,1]"),
+            "scene 0: nodes: expected nodes without a parent, found 1, a child of 0");
+  // Several parents of one node place it as often: not of the format, but as meant.
+  EXPECT_EQ(fault("/nodes/2", R"({"children":[1]})"), "");
 }
 
 TEST(GltfValues, PrimitivesHavePositions) {
@@ -117,6 +139,21 @@ TEST(GltfValues, StripsHaveCorners) {
   json["accessors"][1]["count"] = 2u;
   EXPECT_EQ(fault(json),
             "mesh 'm', primitive 0: expected 3 or more corners of a strip or fan, found 2");
+}
+
+// Found by a newcomer: what was left of a list of triangles was dropped.
+TEST(GltfValues, TrianglesAreWhole) {
+  Library json = two_triangles();
+  json["accessors"][1]["count"] = 2u;
+  EXPECT_EQ(fault(json), "mesh 'm', primitive 0: expected a multiple of 3 corners, found 2");
+  json["meshes"][0]["primitives"][0]["mode"] = 1u;  // lines
+  EXPECT_EQ(fault(json), "");
+  Library without_indices = two_triangles();
+  without_indices["meshes"][0]["primitives"][0].erase("indices");
+  EXPECT_EQ(fault(without_indices), "");
+  without_indices["accessors"][0]["count"] = 2u;
+  EXPECT_EQ(fault(without_indices),
+            "mesh 'm', primitive 0: expected a multiple of 3 corners, found 2");
 }
 
 TEST(GltfValues, SkinsHaveTheirMatrices) {
