@@ -38,19 +38,24 @@ struct NearInstance {
   }
 };
 
-// Finds the instances after `last` that are nearest to a body, as many as there is room for: so
-// many that a body in the midst of thousands has a few turns, and as few as the stack has room for
-// (threads.md). Walks compare boxes with the center of the body's.
+// Finds the `room` instances after `last` that are nearest to a body. Walks compare boxes with the
+// center of the body's.
 class NearInstances {
  public:
+  // Of the first turn: few, since what they are compared by bounds the walks of the others.
+  static constexpr std::size_t kFirstRoom = 16;
+  // So many that a body in the midst of thousands has a few turns, and as few as the stack has room
+  // for (threads.md).
   static constexpr std::size_t kRoom = 1024;
 
+  // Precondition: room is at most kRoom.
   NearInstances(const BoundScene& scene, const SceneBody& body, const NearInstance& last,
-                double most, QueryWork& work) noexcept
+                std::size_t room, double most, QueryWork& work) noexcept
       : scene_(scene),
         body_(body),
         work_(work),
         last_(last),
+        room_(room),
         most_(most),
         center_(center(body.in_frame)) {
     double squared = 0, magnitude = 0;
@@ -79,7 +84,7 @@ class NearInstances {
   }
 
   /// Whether there may be more.
-  [[nodiscard]] bool is_full() const noexcept { return count_ == kRoom; }
+  [[nodiscard]] bool is_full() const noexcept { return count_ == room_; }
   /// In order.
   [[nodiscard]] std::span<const NearInstance> found() const noexcept {
     return std::span(near_).first(count_);
@@ -98,7 +103,7 @@ class NearInstances {
     const auto begin = near_.begin();
     if (is_full()) {
       if (!(met < near_.front())) return Errc::kOk;
-      std::pop_heap(begin, begin + kRoom);
+      std::pop_heap(begin, begin + static_cast<std::ptrdiff_t>(room_));
       --count_;
     }
     near_[count_++] = met;
@@ -119,6 +124,7 @@ class NearInstances {
   const SceneBody& body_;
   QueryWork& work_;
   const NearInstance last_;
+  const std::size_t room_;
   double most_;  // instances farther away are not looked for
   Eigen::Vector3d center_;
   double radius_;  // of a ball around the body's box
@@ -139,8 +145,8 @@ class NearestOfScene {
   [[nodiscard]] Result<SceneDistance> run() {
     NearInstance last{-1, 0};  // before all others
     QueryWork work(QueryLimits{});
-    for (;;) {
-      NearInstances near(scene_, body_, last, scene_.to_units(most()), work);
+    for (std::size_t room = NearInstances::kFirstRoom;; room = NearInstances::kRoom) {
+      NearInstances near(scene_, body_, last, room, scene_.to_units(most()), work);
       if (const Errc error = near.find(); error != Errc::kOk) return error;
       for (const NearInstance& instance : near.found()) {
         if (instance.gap > scene_.to_units(most())) return answer();

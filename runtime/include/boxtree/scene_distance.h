@@ -42,8 +42,9 @@ struct SceneDistance {
 ///
 /// Instances are compared from near to far by their boxes, as long as one may be nearer than what
 /// was found. A budget counts what is compared of all of them together, not the instances whose
-/// boxes are looked at: all that may be nearer, a thousand at a time. Errors: kInvalidPose, kInvalidQuery (as for distance()), kPartLeftOut, and the codes
-/// of corrupt bytes. Never allocates; takes up to 528 KB of stack.
+/// boxes are looked at: all that may be nearer, sixteen first, then a thousand at a time. Errors:
+/// kInvalidPose, kInvalidQuery (as for distance()), kPartLeftOut, and the codes of corrupt bytes.
+/// Never allocates; takes up to 528 KB of stack.
 BOXTREE_API Result<SceneDistance> distance(const Scene& scene, const Tree& tree, const Pose& pose,
                                            LayerMask layers = kAllLayers,
                                            const DistanceOptions& options = {});
