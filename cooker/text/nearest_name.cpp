@@ -70,7 +70,9 @@ std::string did_you_mean(const std::string& name) {
 
 std::string suggestion(std::string_view name, std::span<const std::string> names) {
   const std::string nearest = nearest_name(name, names);
-  const bool is_near = edit_distance(name, nearest) <= std::max<std::size_t>(name.size() / 3, 1);
+  const std::size_t distance = edit_distance(name, nearest);
+  const bool is_near = distance <= std::max<std::size_t>(name.size() / 3, 1) &&
+                       distance < std::max(name.size(), nearest.size());  // something is common
   return is_near && !nearest.empty() ? did_you_mean(nearest) : std::string();
 }
 

@@ -26,7 +26,7 @@ namespace boxtree::cooker {
                                  std::string_view between = " ");
 
 /// "; did you mean 'query'?" with the nearest of `names`; empty if more than a third of the letters
-/// would change.
+/// would change, or all of them.
 [[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> names);
 
 /// The same of names that may be paths: also with the first of which `name` is the last part.

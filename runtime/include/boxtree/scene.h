@@ -196,7 +196,8 @@ class BOXTREE_API Scene {
   [[nodiscard]] std::uint32_t material_count() const noexcept;
 
   /// Lets update() move a static instance from now on; nothing happens where it moves already.
-  /// O(moving instances), allocates. Errors: kInstanceIndex, kRecordInvalid.
+  /// O(moving instances), allocates: many are named together in SceneOptions::moving. Errors:
+  /// kInstanceIndex, kRecordInvalid.
   Status make_movable(std::uint32_t instance);
   /// Gives a moving instance another pose and refits the tree over the moving ones; O(log) of their
   /// number; allocates for the text of an error alone. Errors: kInstanceIndex, kInstanceStatic,

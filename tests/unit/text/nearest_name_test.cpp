@@ -3,6 +3,8 @@
 #include "cooker/text/nearest_name.h"
 
 #include <array>
+#include <span>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -49,6 +51,14 @@ TEST(Joined, PutsAWordBetween) {
   EXPECT_EQ(joined(words, " and "), " and book and query");
   EXPECT_EQ(joined(std::span(words).last(1)), "query");
   EXPECT_EQ(joined({}), "");
+}
+
+// Found by a newcomer: "a" was meant to be "5".
+TEST(Suggestion, HasSomethingInCommonWithTheName) {
+  const std::array<std::string, 2> names = {"5", "ab"};
+  EXPECT_EQ(suggestion("a", std::span(names).first(1)), "");
+  EXPECT_EQ(suggestion("", std::span(names).first(1)), "");
+  EXPECT_EQ(suggestion("a", std::span(names).last(1)), "; did you mean 'ab'?");
 }
 
 }  // namespace
