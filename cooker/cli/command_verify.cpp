@@ -86,8 +86,9 @@ Verification verify_one(const std::filesystem::path& path, const std::filesystem
   verification.summary =
       any_external(*file) && !arrays
           ? "structure is valid; triangles are external and were not looked at"
-          : fmt::format("valid: {} {}, every triangle inside every box above it",
-                        file->tree_count(), file->tree_count() == 1 ? "tree" : "trees");
+          : fmt::format("valid: {} {}{}, every triangle inside every box above it",
+                        file->tree_count(), file->tree_count() == 1 ? "tree" : "trees",
+                        file->has_scene() ? " and a scene" : "");
   return verification;
 }
 

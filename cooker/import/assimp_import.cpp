@@ -149,9 +149,13 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, ReadOrder 
       return Error{Errc::kImportFailed, std::move(fault)};
     }
     if (why.starts_with("No suitable reader found")) {
-      return Error{Errc::kImportFailed,
-                   fmt::format("no reader knows how it begins; expected a file of the format {}",
-                               source.path().extension().string())};
+      return Error{
+          Errc::kImportFailed,
+          fmt::format("no reader knows how it begins; expected a file of the format {}{}",
+                      source.path().extension().string(),
+                      has_extension(source.path(), "gltf")
+                          ? ", JSON from its first byte on with \"version\": \"2.0\" of its asset"
+                          : "")};
     }
     if (has_extension(source.path(), "step") || has_extension(source.path(), "stp")) {
       return Error{

@@ -18,6 +18,7 @@ same "$(jq -c '[.why[] | select(.reason == "") | .part]' out)" '[]'
 same "$(jq '.scene.file_bytes' out)" "$(stat -c %s level.bxt)"
 grep -q 'level.gltf' level.d
 expect 0 "$boxtree" verify level.bxt
+grep -qE "^level.bxt: valid: [0-9]+ trees? and a scene, every triangle inside every box above it$" out
 expect 0 "$boxtree" cook "$level/level.gltf" -o flat.bxt --flatten --exact --json
 same "$(jq -c '[has("scene"), (.trees | length), .trees[0].triangles]' out)" '[false,1,9648]'
 expect 0 "$boxtree" info level.bxt --json
