@@ -12,6 +12,7 @@
 
 #include <boxtree/boxtree.h>
 
+#include "format/codec.h"
 #include "runtime/primitive/predicates.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/tree/bound_tree.h"
@@ -150,12 +151,14 @@ class SceneDistanceTest : public testing::TestWithParam<CodecId> {
 
 TEST_P(SceneDistanceTest, OfABodyIsThatOfBruteForce) {
   std::size_t apart = 0, touching = 0;
-  for (int i = 0; i < 60; ++i) {
+  const std::size_t bodies =
+      is_wide(GetParam()) ? 60 : 20;  // what all codecs share takes most of the time
+  for (std::size_t i = 0; i < bodies; ++i) {
     if (i % 10 == 9) {  // others are where they were
       for (const BoundScene::Moving& moving : BoundScene::of(scene_).moving()) {
         ASSERT_TRUE(scene_.update(moving.instance, body_pose(4)).ok());
       }
-      const std::uint32_t off = static_cast<std::uint32_t>(i) % kInstances;
+      const std::uint32_t off = static_cast<std::uint32_t>(i % kInstances);
       ASSERT_TRUE(scene_.set_enabled(off, !scene_.is_enabled(off)).ok());
       place_all();
     }
@@ -197,8 +200,8 @@ TEST_P(SceneDistanceTest, OfABodyIsThatOfBruteForce) {
     }
     if (HasFailure()) FAIL() << "body " << i;
   }
-  EXPECT_GT(apart, 20u);
-  EXPECT_GT(touching, 5u);
+  EXPECT_GT(apart, bodies / 3);
+  EXPECT_GT(touching, bodies / 12);
 }
 
 TEST_P(SceneDistanceTest, OfAnInstanceIsThatFromWhatItCollidesWith) {
