@@ -302,7 +302,7 @@ SourceMesh with_quads(std::size_t period) {
 
 // Small meshes of every kind, one with more vertices than 16 bits can name, those with quads, a
 // small one far from the origin, one in double precision.
-std::vector<SourceMesh> meshes() {
+std::vector<SourceMesh> make_meshes() {
   std::vector<SourceMesh> meshes = test::all_kinds();
   meshes.push_back(
       changed(test::torus(300, 220), "large_torus", [](float x, std::size_t) { return x; }));
@@ -311,6 +311,11 @@ std::vector<SourceMesh> meshes() {
     return x * 1e-4f + (axis == 0 ? 1.0f : -2.0f);
   }));
   meshes.push_back(in_double(test::torus(30, 20), "in_double"));
+  return meshes;
+}
+// Made once: the name of each test needs them.
+const std::vector<SourceMesh>& meshes() {
+  static const std::vector<SourceMesh> meshes = make_meshes();
   return meshes;
 }
 
