@@ -233,6 +233,7 @@ refused_call "MESHES has '../meshes/level.obj;../meshes/crate.obj' in one piece"
   TARGET all_assets MESHES '"../meshes/level.obj;../meshes/crate.obj"'
 refused_call "CACHE of target all_assets has no value" TARGET all_assets MESHES ../meshes/level.obj CACHE
 refused_call "DEFINITION is 'A B', which is no name of a macro" TARGET all_assets MESHES ../meshes/level.obj DEFINITION '"A B"'
+refused_call "target boxtree::cli is imported, and this build makes nothing for it" TARGET boxtree::cli MESHES ../meshes/level.obj
 refused_call "TARGET is missing" MESHES ../meshes/level.obj
 # shellcheck disable=SC2016 # a variable of CMake
 for meshes in MESHES 'MESHES ${NONE}' 'MESHES ""' ''; do
@@ -248,7 +249,7 @@ find_package(boxtree CONFIG REQUIRED)
 add_custom_target(all_assets)
 boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj OPTIONS "--grid-bits 12")
 CMAKE
-for option in '-o x.bxt' -ox.bxt --output=x.bxt '--depfile x.d'; do
+for option in '-o x.bxt' -ox.bxt --output=x.bxt '--depfile x.d' '--write-reordered x.obj'; do
   refused "OPTIONS has '${option%% *}', but the function names what it writes: NAME.bxt and NAME.bxt.d in OUTPUT_DIR" <<CMAKE
 find_package(boxtree CONFIG REQUIRED)
 add_custom_target(all_assets)
