@@ -12,7 +12,7 @@ namespace boxtree {
 struct Memory {
   void* context = nullptr;  ///< Handed to both; has to live as long as what was allocated.
   /// Memory of at least `size` bytes at a multiple of `alignment` (a power of two), or nullptr,
-  /// which is answered with std::bad_alloc; by the functions that read a file, with kOutOfMemory.
+  /// which is answered with std::bad_alloc; where a file is copied, of its bytes, by kOutOfMemory.
   void* (*allocate)(void* context, std::size_t size, std::size_t alignment) = nullptr;
   /// Takes back what `allocate` gave for the same size and alignment.
   void (*release)(void* context, void* memory, std::size_t size, std::size_t alignment) = nullptr;
