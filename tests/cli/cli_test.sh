@@ -145,10 +145,12 @@ grep -q '^boxtree: budget_unreachable: refused.bxt: wanted at most 1 B/tri; .* t
 for budget in 0 -1 nan; do expect 1 "$boxtree" cook cube.obj -o grid.bxt --max-slowdown=$budget; done
 # Slowdowns below 1, faster than wide8 with arrays, may be requested, on the command line and in a profile.
 expect 1 "$boxtree" cook cube.obj -o refused.bxt --max-slowdown 0.5
-grep -q '^boxtree: budget_unreachable: refused.bxt: wanted a slowdown of at most 0.5; .*, slowdown 1' err
+grep -q '^boxtree: budget_unreachable: refused.bxt: wanted a slowdown of at most 0.5; .* takes .* B/tri, slowdown [0-9.]* (slowdown: ' err
+expect 0 "$boxtree" cook cube.obj -o refused.bxt --max-slowdown "$(sed -n 's/.*, slowdown \([0-9.]*\) (slowdown: .*/\1/p' err)"
+rm refused.bxt
 printf '[budget]\nslowdown = 0.5\n' >fast.toml
 expect 1 "$boxtree" cook cube.obj -o refused.bxt --profile fast.toml
-grep -q '^boxtree: budget_unreachable: fast.toml:2: slowdown = 0.5: wanted a slowdown of at most 0.5; .*, slowdown 1' err
+grep -q '^boxtree: budget_unreachable: fast.toml:2: slowdown = 0.5: wanted a slowdown of at most 0.5; .*, slowdown [0-9.]* (' err
 [ ! -e refused.bxt ]
 
 expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --json
@@ -1236,7 +1238,7 @@ misvalued 'tree_index: both.bxt: no tree is called "nobody"; expected cube or fl
 for method in lzma zstd; do
   expect 0 "$boxtree" cook cube.obj -o blob.bxt --codec "blob-$method"
   expect 0 "$boxtree" verify blob.bxt
-  expect 1 "$boxtree" bench blob.bxt
+  expect 5 "$boxtree" bench blob.bxt
   grep -q '^boxtree: feature_unsupported: blob.bxt: it is a blob, and bench times files that are mapped; cook it' err
   expect 0 "$boxtree" info blob.bxt --json
   same "$(jq -r '.trees[0].codec' out)" plain-f32
