@@ -20,8 +20,10 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/scene_info.h"
+#include "cooker/cli/standard_streams.h"
 #include "cooker/cli/surface_text.h"
 #include "cooker/export/decoded_faces.h"
+#include "cooker/import/file_error.h"
 #include "cooker/text/at_most.h"
 #include "cooker/text/counted.h"
 #include "format/active_edges.h"
@@ -301,10 +303,8 @@ void print_file(const Json& json) {
   fmt::print("bytes: {}\n", text_of_bytes(json));
 }
 
-Result<Json> info_on(const std::filesystem::path& path) {
-  const Result<OpenedFile> opened = open_file(path);
-  if (!opened) return opened.error();
-  const File* const file = &opened->file;
+Result<Json> info_of(const OpenedFile& opened) {
+  const File* const file = &opened.file;
   for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
     if (file->is_pack()) {
       if (const Result<Member> member = file->member(i); !member) return member.error();
@@ -321,9 +321,17 @@ Result<Json> info_on(const std::filesystem::path& path) {
   } else if (Json names = material_names(*file); !names.empty()) {
     json["materials"] = std::move(names);
   }
-  if (opened->blob_bytes != 0) {
-    json["blob"] = {{"file_bytes", opened->blob_bytes}, {"resident_bytes", file->bytes().size()}};
+  if (opened.blob_bytes != 0) {
+    json["blob"] = {{"file_bytes", opened.blob_bytes}, {"resident_bytes", file->bytes().size()}};
   }
+  return content;
+}
+
+Result<Json> info_on(const std::filesystem::path& path) {
+  const Result<OpenedFile> opened = open_file(path);
+  if (!opened) return opened.error();
+  Result<Json> content = info_of(*opened);
+  if (!content) return in_file(input_name(path), content.error());
   return content;
 }
 

@@ -59,6 +59,16 @@ struct Verification {
   std::string summary;       // of a file without findings
 };
 
+// What a newer program wrote is no damage: its own status, where nothing else was found.
+int status_of(const Findings& findings) {
+  if (findings.empty()) return 0;
+  const auto status = [](const Error& finding) { return error_info(finding.code).exit_status; };
+  const bool is_damaged = std::any_of(findings.begin(), findings.end(), [&](const Error& finding) {
+    return status(finding) == kExitBadInput;
+  });
+  return is_damaged ? kExitBadInput : status(findings.front());
+}
+
 // A file or a mesh that cannot be read at all.
 Verification refusal(const Error& error) {
   return {fail(error), true, {error}, {}};
@@ -82,7 +92,7 @@ Verification verify_one(const std::filesystem::path& path, const std::filesystem
   for (const Error& finding : verify_file(*file, arrays)) {
     verification.findings.push_back(in_file(input_name(path), naming_mesh(mesh, finding)));
   }
-  if (!verification.findings.empty()) verification.status = kExitBadInput;
+  verification.status = status_of(verification.findings);
   verification.summary =
       any_external(*file) && !arrays
           ? "structure is valid; triangles are external and were not looked at"

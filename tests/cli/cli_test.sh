@@ -512,6 +512,24 @@ expect 3 "$boxtree" verify found.bxt cube.bxt
 same "$(head -1 err)" 'boxtree: checksum_mismatch: found.bxt: section 0 (trees): checksum differs (finding 1 of 2)'
 same "$(grep -vc '^boxtree: [a-z_]*: found.bxt: ' err)" 0
 same "$(cat out)" 'cube.bxt: valid: 1 tree, every triangle inside every box above it'
+# Found by a newcomer: what a newer program wrote was damage for verify, and info did not say in which file.
+/usr/bin/python3 - cube.bxt newer.bxt <<'PYTHON'
+import struct, sys, xxhash
+data = bytearray(open(sys.argv[1], "rb").read())
+count = struct.unpack_from("<I", data, 12)[0]
+end = 32 + 16 * count
+size = struct.unpack_from("<Q", data, 32)[0] & (1 << 40) - 1
+trees = end + -end % (8 if size < 4096 else 64)
+data[trees] = 9  # the codec
+struct.pack_into("<Q", data, 32 + 8, xxhash.xxh3_64_intdigest(bytes(data[trees:trees + size])))
+struct.pack_into("<Q", data, 24, xxhash.xxh3_64_intdigest(bytes(data[:24] + data[32:end])))
+open(sys.argv[2], "wb").write(data)
+PYTHON
+for command in "info newer.bxt cube.bxt" "verify newer.bxt cube.bxt" "verify newer.bxt -q"; do
+  # shellcheck disable=SC2086 # several words
+  expect 5 "$boxtree" $command
+  grep -q '^boxtree: codec_unsupported: newer.bxt: tree 0: codec 9' err
+done
 got=0
 "$boxtree" verify - <found.bxt 2>err || got=$?
 same "$got" 3
