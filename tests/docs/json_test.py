@@ -171,6 +171,8 @@ RUNS = {
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query level.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0 --all",
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0 --all",
+        "query arrays.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1e-320",
+        "query arrays.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1e-320 --all",
     ],
     "query FILE collide": [
         "query edges.bxt collide --sphere 0.25 --at 0.2,0.1,1.1",
@@ -194,6 +196,8 @@ RUNS = {
         "query level.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0 --all",
         "query nameless.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0",
         "query nameless.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0 --all",
+        "query arrays.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1e-320",
+        "query arrays.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1e-320 --all",
     ],
     "query FILE box, sphere, frustum": [
         f"query arrays.bxt frustum --matrix {VIEW}",
