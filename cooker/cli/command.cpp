@@ -167,16 +167,11 @@ void Option::expect_number() {
   expected_ = std::is_floating_point_v<T> ? "a number"
               : std::is_signed_v<T>       ? "a whole number"
                                           : "a whole number of 0 or more";
-  // Unsigned numbers of CLI11 take "-1" for 2^64 - 1.
-  is_allowed_ = [](double value) { return !std::is_unsigned_v<T> || value >= 0; };
+  is_allowed_ = [](double /*value*/) { return true; };
   parsed_->check(CLI::Validator(
       [this](std::string& text) {
-        std::optional<double> value = number_of<double>(text);
-        if constexpr (!std::is_floating_point_v<T>) {
-          T converted{};
-          if (!CLI::detail::lexical_cast(text, converted)) value.reset();
-        }
-        return value && is_allowed_(*value)
+        const std::optional<double> value = number_of<double>(text);
+        return number_of<T>(text) && is_allowed_(value.value_or(0))
                    ? std::string()
                    : fmt::format("expected {}, found \"{}\"", expected_, text);
       },
@@ -361,16 +356,16 @@ Option* Command::add_option(const std::string& name, T& out, const std::string& 
         },
         help));
   }
-  if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>) {
-    // CLI11 reads numbers as long double, and rounds them twice.
-    Option* const option = add(app_->add_option_function<std::string>(
-        name, [&out](const std::string& text) { out = number_of<double>(text).value(); }, help));
-    option->expect_number<double>();
-    return option;
-  }
-  if constexpr (std::is_arithmetic_v<T>) {
-    Option* const option = add(app_->add_option(name, out, help));
-    option->expect_number<T>();
+  if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::optional<double>>) {
+    // CLI11 reads numbers as long double, and rounds them twice; 010 is 8 for it.
+    using Number = std::conditional_t<std::is_arithmetic_v<T>, T, double>;
+    CLI::Option* const parsed = app_->add_option_function<std::string>(
+        name, [&out](const std::string& text) { out = number_of<Number>(text).value(); }, help);
+    if constexpr (std::is_arithmetic_v<T>) {
+      parsed->default_function([&out] { return fmt::format("{}", out); });
+    }
+    Option* const option = add(parsed);
+    option->expect_number<Number>();
     return option;
   } else {
     return add_text(app_->add_option(name, out, help));

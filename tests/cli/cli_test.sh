@@ -709,6 +709,12 @@ for number in 0x10 +1 1e400 1e-400 '1 ' ''; do
   misvalued "usage: query ray: --t-max: expected a number, found \"$number\"" query cube.bxt ray --origin 0,0,9 --direction 0,0,-1 --t-max "$number"
 done
 expect 0 "$boxtree" query cube.bxt ray --origin 0,0,9 --direction 0,0,-1 --t-max inf
+# Found by a newcomer: whole numbers with a leading zero were octal, 08 was none, and 010 was 8.
+expect 0 "$boxtree" cook cube.obj -o ten.bxt --grid-bits 10 -q
+expect 0 "$boxtree" cook cube.obj -o zeros.bxt --grid-bits 010 -q
+cmp ten.bxt zeros.bxt
+expect 0 "$boxtree" cook cube.obj -o zeros.bxt --grid-bits 08 --jobs 01 -q
+misvalued 'usage: cook: --grid-bits: expected a whole number from 8 to 30, found "0b1010"' cook cube.obj -o x.bxt --grid-bits 0b1010
 # What a ray leaves behind, by a newcomer's wish: it begins at --t-min.
 expect 0 "$boxtree" query cube.bxt ray --origin 0.5,0.25,9 --direction 0,0,-1
 first=$(sed -n 's/^t: //p' out)
