@@ -169,9 +169,9 @@ TEST(GltfValues, NothingIsReadPastItsBuffer) {
   EXPECT_EQ(fault("/accessors/0/count", "4"),
             "accessor 0: count: expected no more than the 44 bytes of bufferView 0 hold from byte "
             "0 on, found 4");
-  EXPECT_EQ(fault("/accessors/1/count", "4"),
+  EXPECT_EQ(fault("/accessors/1/count", "6"),
             "accessor 1: count: expected no more than the 8 bytes of bufferView 1 hold from byte "
-            "2 on, found 4");
+            "2 on, found 6");
   EXPECT_NE(fault("/accessors/0/count", "18446744073709551615"), "");
   EXPECT_EQ(fault("/accessors/1/byteOffset", "-1"),
             "accessor 1: byteOffset: expected a whole number of 0 or more, found -1");
