@@ -80,4 +80,8 @@ const char* foreign_file(const SourceFile& source) {
   return is_webp ? "a picture (WebP)" : nullptr;
 }
 
+bool begins_with_mark(const SourceFile& source) {
+  return start_of(source).starts_with("\xef\xbb\xbf");
+}
+
 }  // namespace boxtree::cooker

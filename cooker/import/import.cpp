@@ -114,6 +114,12 @@ bool has_mesh_ending(const fs::path& path) {
 Error explained(const SourceFile& source, const Error& error) {
   if (error.code != Errc::kImportFailed && error.code != Errc::kNoFaces) return error;
   const std::string& title = source.title();
+  if (begins_with_mark(source) && !has_extension(source.path(), "obj")) {
+    return {error.code,
+            title +
+                ": it begins with a byte order mark (EF BB BF), which of meshes OBJ alone may "
+                "have: save it as UTF-8 without one"};
+  }
   if (const char* const what = foreign_file(source)) {
     return {error.code, fmt::format("{}: expected a mesh, found {}", title, what)};
   }

@@ -166,13 +166,14 @@ TEST_F(ImportErrorTest, ACutFileIsToldSo) {
   EXPECT_TRUE(has(fail("broken.gltf", "{\"asset\":\n{\"version\": \"2.0\"}, }").detail,
                   "broken.gltf: its JSON is broken in line 2, at byte 30 of 31"));
   EXPECT_TRUE(has(fail("no.gltf", "hello").detail, "no reader knows how it begins"));
-  // Found by a newcomer: a byte order mark and another version have the same error.
-  for (const char* text :
-       {"\xef\xbb\xbf{\"asset\":{\"version\":\"2.0\"}}", R"({"asset":{"version":"3.0"}})"}) {
-    EXPECT_TRUE(has(fail("no.gltf", text).detail,
-                    "expected a file of the format .gltf, JSON from its first byte on with "
-                    "\"version\": \"2.0\" of its asset"))
-        << fail("no.gltf", text).detail;
+  EXPECT_TRUE(has(fail("no.gltf", R"({"asset":{"version":"3.0"}})").detail,
+                  "expected a file of the format .gltf, JSON from its first byte on with "
+                  "\"version\": \"2.0\" of its asset"));
+  // Found by newcomers: a text STL was "cut short", a PLY file "no PLY file".
+  for (const char* name : {"mark.gltf", "mark.stl", "mark.ply", "mark.off"}) {
+    EXPECT_TRUE(has(fail(name, "\xef\xbb\xbfsolid x\nendsolid x\n").detail,
+                    "it begins with a byte order mark (EF BB BF)"))
+        << fail(name, "\xef\xbb\xbfsolid x\nendsolid x\n").detail;
   }
   const std::string header("glTF\x02\0\0\0\x40\x06\0\0", 12);
   EXPECT_TRUE(has(fail("cut.glb", header.substr(0, 9)).detail,

@@ -154,7 +154,8 @@ TEST(ImportSceneModelsTest, EveryFile) {
   }
   EXPECT_GT(count["read"], 300u);
   EXPECT_GT(count["several instances"], 60u);
-  EXPECT_GE(count["shared meshes"], 30u);
+  // Not glTF2/IncorrectVertexArrays/Cube.gltf, which has 35 corners of triangles and is refused.
+  EXPECT_GE(count["shared meshes"], 29u);
 }
 
 }  // namespace
