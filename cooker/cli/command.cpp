@@ -170,8 +170,8 @@ void Option::expect_number() {
   is_allowed_ = [](double /*value*/) { return true; };
   parsed_->check(CLI::Validator(
       [this](std::string& text) {
-        const std::optional<double> value = number_of<double>(text);
-        return number_of<T>(text) && is_allowed_(value.value_or(0))
+        const std::optional<T> value = number_of<T>(text);
+        return value && is_allowed_(static_cast<double>(*value))
                    ? std::string()
                    : fmt::format("expected {}, found \"{}\"", expected_, text);
       },

@@ -10,7 +10,7 @@ namespace boxtree::cooker {
 /// be a mesh.
 [[nodiscard]] const char* foreign_file(const SourceFile& source);
 
-/// Whether it begins with the byte order mark of UTF-8, which readers of OBJ alone skip.
+/// Whether it begins with the byte order mark of UTF-8, which some readers skip.
 [[nodiscard]] bool begins_with_mark(const SourceFile& source);
 
 /// The ending, ".ply", of the meshes that begin as the file does, if its name has another one;

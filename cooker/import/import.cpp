@@ -114,11 +114,12 @@ bool has_mesh_ending(const fs::path& path) {
 Error explained(const SourceFile& source, const Error& error) {
   if (error.code != Errc::kImportFailed && error.code != Errc::kNoFaces) return error;
   const std::string& title = source.title();
-  if (begins_with_mark(source) && !has_extension(source.path(), "obj")) {
+  const auto is = [&](const char* format) { return has_extension(source.path(), format); };
+  if ((is("gltf") || is("off") || is("ply") || is("stl")) && begins_with_mark(source)) {
     return {error.code,
             title +
-                ": it begins with a byte order mark (EF BB BF), which of meshes OBJ alone may "
-                "have: save it as UTF-8 without one"};
+                ": it begins with a byte order mark (EF BB BF), which its format has not: save "
+                "it as UTF-8 without one"};
   }
   if (const char* const what = foreign_file(source)) {
     return {error.code, fmt::format("{}: expected a mesh, found {}", title, what)};

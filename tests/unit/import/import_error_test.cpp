@@ -175,6 +175,7 @@ TEST_F(ImportErrorTest, ACutFileIsToldSo) {
                     "it begins with a byte order mark (EF BB BF)"))
         << fail(name, "\xef\xbb\xbfsolid x\nendsolid x\n").detail;
   }
+  EXPECT_FALSE(has(fail("mark.dae", "\xef\xbb\xbf<COLLADA").detail, "byte order mark"));
   const std::string header("glTF\x02\0\0\0\x40\x06\0\0", 12);
   EXPECT_TRUE(has(fail("cut.glb", header.substr(0, 9)).detail,
                   "cut.glb: its header ends after 9 bytes, as if the file was cut short"));
