@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Compiled on Windows, this is nothing: see program_start_windows.cpp.
 #ifndef _WIN32
+#include <cerrno>
 #include <csignal>
 #include <cstddef>
+#include <fcntl.h>
 #include <new>
 #include <sys/mman.h>
 #include <sys/resource.h>
 
 #include "cooker/cli/program_start.h"
+#include "cooker/system/descriptor.h"
 
 #ifndef MAP_NORESERVE  // macOS has none, and reserves nothing
 #define MAP_NORESERVE 0
@@ -38,9 +41,23 @@ void grow_stack() {
   touch_stack();
 }
 
+// A standard stream that is closed leaves its number to the next file that is opened, into which
+// all that is printed would be written. So each is opened, the other way round: what reads or
+// writes it is still told that it is closed (EBADF). Without a null device it is a folder.
+void reserve_standard_streams() {
+  for (const int stream : {kStandardInput, kStandardOutput, kStandardError}) {
+    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest number that is free: this stream's, since those below it are open. Where no file
+    // can be opened, none takes its place, either.
+    if (::open("/dev/null", stream == kStandardInput ? O_WRONLY : O_RDONLY) >= 0) continue;
+    static_cast<void>(::open("/", O_RDONLY));
+  }
+}
+
 }  // namespace
 
 void prepare_process(int& /*argc*/, char**& /*argv*/) {
+  reserve_standard_streams();
 #ifdef SIGXFSZ
   // A limit of file sizes is an error of the write, which is reported and leaves no half a file.
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));

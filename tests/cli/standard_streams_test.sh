@@ -31,6 +31,26 @@ cmp crate.bxt piped.bxt
 same "$(wc -c <err)" 0
 "$boxtree" cook crate.obj -o - --strip 2>/dev/full >piped.bxt
 cmp crate.bxt piped.bxt
+# Found by a newcomer: a stream that is closed left its number to the next file, so that messages were written into cooked
+# files and their caches, and what was to go to standard output was lost without an error.
+for job in 1 2 3 4 5 6 7 8; do
+  printf '{"output":"closed-%s.bxt","inputs":["crate.obj"],"options":["--strip"]}\n' "$job" >>closed.jsonl
+  printf '{"output":"missing-%s.bxt","inputs":["nowhere.obj"]}\n' "$job" >>closed.jsonl
+done
+status=0
+"$boxtree" cook --manifest closed.jsonl --cache closed-cache --journal closed.done --json <&- >&- 2>&- || status=$?
+same "$status" 2
+for job in 1 2 3 4 5 6 7 8; do cmp crate.bxt "closed-$job.bxt"; done
+if grep -v '^{' closed.done; then echo "messages in a journal" >&2; exit 1; fi
+for command in "cook crate.obj -o -" "export crate.bxt -o -" "info crate.bxt"; do
+  status=0
+  # shellcheck disable=SC2086 # a list of words
+  "$boxtree" $command >&- 2>err || status=$?
+  same "$status,$(sed 's/cannot be written: //' err)" '2,boxtree: write_failed: standard output: Bad file descriptor'
+done
+status=0
+"$boxtree" info - <&- 2>err || status=$?
+same "$status,$(cat err)" '2,boxtree: file_unreadable: standard input: Bad file descriptor'
 for query in "ray --origin 0,0,9 --direction 0,0,-1" "point --at 3,0,0"; do
   # shellcheck disable=SC2086 # a list of words
   "$boxtree" cook - --format obj -o - <crate.obj | "$boxtree" query - $query --json >piped
