@@ -431,6 +431,10 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
     warnings.push_back(fmt::format(
         "{}: f32 has few digits for a mesh so {} and moved a vertex by up to {}; {}", source,
         is_tiny ? "small" : "far from the origin", at_most(import.moved_by_f32, 3), remedy));
+  } else if (import.flattened_by_f32 > 0) {
+    warnings.push_back(fmt::format("{}: {} of {} faces have an area in f64 and none in f32; {}",
+                                   source, import.flattened_by_f32, import.source_faces,
+                                   cook_remedy_of(import.f32_loss)));
   }
   if (import.has_f32_alone && import.moved_by_f32 == 0) {
     warnings.push_back(

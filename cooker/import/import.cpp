@@ -67,10 +67,16 @@ SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::
   return scene;
 }
 
+// Whether it is worth another reading to know what f32 has to do with that.
+bool is_mostly_flat(const ImportReport& report) {
+  return report.degenerate_faces > 0 && 2 * report.degenerate_faces >= report.source_faces;
+}
+
 Status measure_digits(const MeshReader& reader, const Request& request, Imported& mesh) {
   const Positions& positions = mesh.mesh.positions;
+  const bool may_be_flattened = is_mostly_flat(mesh.report);
   if (positions.precision != Precision::kF32 || mesh.report.has_f32_alone ||
-      !(request.options.count_moves || may_have_moved(positions))) {
+      !(request.options.count_moves || may_be_flattened || may_have_moved(positions))) {
     return {};
   }
   ImportOptions options = request.options;
@@ -84,6 +90,12 @@ Status measure_digits(const MeshReader& reader, const Request& request, Imported
   const bool is_told = moved > unnoticed_move(positions);
   if (is_told) mesh.report.moved_by_f32 = moved;
   if (is_told || request.options.count_moves) mesh.mesh.moved_by_f32 = moved;
+  if (may_be_flattened) {
+    // f32 can give a face an area, too: three points on a line that it moves off each other.
+    mesh.report.flattened_by_f32 =
+        mesh.report.degenerate_faces -
+        std::min(mesh.report.degenerate_faces, exact.report.degenerate_faces);
+  }
   return {};
 }
 

@@ -99,6 +99,9 @@ struct ImportReport {
   std::size_t vertices_unused = 0;   // in no imported face; removed
   std::size_t vertices_welded = 0;   // bit-equal duplicates removed
   std::size_t degenerate_faces = 0;  // zero area; kept
+  /// Text and PLY read as f32, where half of all faces or more have no area: how many fewer
+  /// have none in f64.
+  std::size_t flattened_by_f32 = 0;
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
   /// Text and PLY read as f32, and meshes that nodes place in f32: how far a vertex was moved by
   /// that, at most; 0 if no farther than unnoticed_move (f32_digits.h). The mesh has it, too, and

@@ -1354,6 +1354,15 @@ expect 0 "$boxtree" cook tiny.obj -o tiny.bxt -q --json
 same "$(cat err)" 'boxtree: warning: tiny.obj: f32 has few digits for a mesh so small and moved a vertex by up to 1e-50; cook --f64 keeps all digits, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
 same "$(jq '.trees[0].import.moved_by_f32' out)" 1e-50
 expect 5 "$boxtree" cook tiny.obj -o tiny.bxt -q --tolerance 1e-51
+# And that it took the area of half of the faces, though it moved no vertex far beside the mesh.
+printf '%s\n' 'v 0 0 0' 'v 1000 0 0' 'v 0 1000 0' 'v 1 0 0' 'v 1.00000001 0 0' 'v 1 1e-8 0' 'f 1 2 3' 'f 4 5 6' >flat.obj
+expect 0 "$boxtree" cook flat.obj -o flat.bxt -q
+same "$(cat err)" 'boxtree: warning: flat.obj: 1 of 2 faces have an area in f64 and none in f32; cook --f64 keeps all digits'
+expect 0 "$boxtree" cook flat.obj -o flat.bxt -q --f64
+same "$(cat err)" ''
+sed -i s/1.00000001/1/ flat.obj # one that has none anywhere
+expect 0 "$boxtree" cook flat.obj -o flat.bxt -q
+same "$(cat err)" ''
 
 # What f32 takes far from the origin is told, and kept on request: whole, or on a grid over the mesh.
 printf 'v %s\n' '459123.4321 5412345.6789 0' '459123.5321 5412345.6789 0' '459123.4321 5412345.7789 0' >far.obj
