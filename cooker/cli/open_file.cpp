@@ -2,6 +2,7 @@
 // Whether a file is a blob is known from its header alone.
 #include "cooker/cli/open_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <vector>
 
@@ -77,7 +78,13 @@ Result<std::uint32_t> find_tree(const File& file, const WhichTree& wanted) {
                              "file; expected a number from 0 to {}",
                              which, file.tree_count() - 1)};
   }
-  std::string meant = path_suggestion(which, names);
+  const auto below = std::ranges::find_if(
+      names, [&](const std::string& name) { return name.starts_with(which + "/"); });
+  std::string meant;
+  if (below != names.end()) {
+    meant = fmt::format(": that is a file or a scene of several, such as \"{}\"", *below);
+  }
+  if (meant.empty()) meant = path_suggestion(which, names);
   if (meant.empty()) meant = expected_if_few(names);
   return Error{Errc::kTreeIndex, fmt::format("no tree is called \"{}\"{}", which, meant)};
 }

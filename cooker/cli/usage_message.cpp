@@ -27,6 +27,29 @@ const Command& innermost(const CLI::App& program) {
   return command_of(*at);
 }
 
+// What other programs call commands and options of ours; both in one list, since options begin
+// with "--".
+struct Synonym {
+  std::string_view word, name;
+};
+constexpr Synonym kSynonyms[] = {
+    {"build", "cook"},       {"convert", "cook"},    {"check", "verify"},
+    {"validate", "verify"},  {"list", "info"},       {"show", "info"},
+    {"dump", "export"},      {"hash", "key"},        {"closest", "point"},
+    {"nearest", "point"},    {"sweep", "cast"},      {"--from", "--origin"},
+    {"--start", "--origin"}, {"--position", "--at"}, {"--position", "--center"},
+    {"--threads", "--jobs"}, {"--low", "--min"},     {"--high", "--max"},
+};
+
+// "; did you mean 'point'?" of "nearest", where there is such a name; empty if not.
+std::string synonym_suggestion(std::string_view word, const std::vector<std::string>& names) {
+  for (const Synonym& synonym : kSynonyms) {
+    if (synonym.word != word || std::ranges::find(names, synonym.name) == names.end()) continue;
+    return fmt::format("; did you mean '{}'?", synonym.name);
+  }
+  return {};
+}
+
 std::vector<std::string> command_names(const Command& command) {
   std::vector<std::string> names;
   for (const Command* inner : command.commands()) names.push_back(inner->name());
@@ -110,7 +133,9 @@ std::string meant_option(const std::string& word, const std::vector<std::string>
   std::vector<std::string> longer;
   std::copy_if(names.begin(), names.end(), std::back_inserter(longer),
                [&](const std::string& name) { return name.starts_with(word); });
-  return longer.size() == 1 ? "; did you mean '" + longer.front() + "'?" : suggestion(word, names);
+  if (longer.size() == 1) return "; did you mean '" + longer.front() + "'?";
+  const std::string synonym = synonym_suggestion(word, names);
+  return synonym.empty() ? suggestion(word, names) : synonym;
 }
 
 // An option that nobody took.
@@ -274,8 +299,9 @@ std::string unknown_command(const Command& command, const std::string& word) {
     }
   }
   const std::vector<std::string> names = command_names(command);
-  const std::string similar = suggestion(word, names);
-  if (!similar.empty()) return start + similar;
+  for (const std::string& meant : {synonym_suggestion(word, names), suggestion(word, names)}) {
+    if (!meant.empty()) return start + meant;
+  }
   std::vector<std::string> owners;
   add_owners(command, "--" + word, owners);
   if (!owners.empty()) return start + " but an option; see " + listed(owners);

@@ -597,13 +597,21 @@ See 'boxtree --help'."
 misspelt "boxtree: usage: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt rya
 kinds='ray, cast, collide, box, sphere, frustum, point, pair, distance, overlap or contacts'
-misspelt "boxtree: usage: query: 'sweep' is no kind of query; expected $kinds
-See 'boxtree query --help'." query cube.bxt sweep --at 0,0,0
+misspelt "boxtree: usage: query: 'twist' is no kind of query; expected $kinds
+See 'boxtree query --help'." query cube.bxt twist --at 0,0,0
 misspelt "boxtree: usage: query: 'shapecast' is no kind of query; expected $kinds; did you mean 'cast'?
 See 'boxtree query --help'." query cube.bxt shapecast --at 0,0,0
 misspelt "boxtree: usage: query: 'raycast' is no kind of query; expected $kinds; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt raycast --origin 0,0,9
 # A file in the place of a command.
+misspelt "boxtree: usage: query: 'nearest' is no kind of query; did you mean 'point'?
+See 'boxtree query --help'." query cube.bxt nearest
+misspelt "boxtree: usage: 'validate' is no command; did you mean 'verify'?
+See 'boxtree --help'." validate cube.bxt
+misspelt "boxtree: usage: query ray: '--from' is no option; did you mean '--origin'?
+See 'boxtree query ray --help'." query cube.bxt ray --from 0,0,9 --to 0,0,0
+misspelt "boxtree: usage: query sphere: '--position' is no option; did you mean '--center'?
+See 'boxtree query sphere --help'." query cube.bxt sphere --position 0,0,0 --radius 1
 misspelt "boxtree: usage: 'sub/cube.obj' is no command; did you mean 'boxtree cook sub/cube.obj -o cube.bxt'?
 See 'boxtree --help'." sub/cube.obj
 misspelt "boxtree: usage: 'cube.STL' is no command; did you mean 'boxtree cook cube.STL -o cube.bxt'?

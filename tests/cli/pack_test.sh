@@ -107,6 +107,8 @@ expect 1 "$boxtree" query all.bxt --scene rock --tree rock "${ray[@]}"
 same "$(head -1 err)" 'boxtree: usage: query ray: --tree excludes --scene'
 expect 1 "$boxtree" query all.bxt --tree rok ray --origin 0,0,9 --direction 0,0,-1
 grep -q "did you mean 'rock'" err
+expect 1 "$boxtree" query all.bxt --tree level ray --origin 0,0,9 --direction 0,0,-1
+grep -q '"level": that is a file or a scene of several, such as "level/' err
 expect 0 "$boxtree" export all.bxt --tree rock -o rock.glb
 
 # Names: two of one name are refused, with the remedy; paths keep them apart.
