@@ -16,6 +16,7 @@
 
 #include "cooker/system/posix.h"
 #include "cooker/system/write_failure.h"
+#include "cooker/write/folder_sweep.h"
 #include "cooker/write/temporary_file.h"
 #include "cooker/write/temporary_name.h"
 
@@ -42,25 +43,33 @@ struct CloseDirectory {
 };
 
 // NFS locks exclusively only what is open for writing; others may have files that only can be read.
-int open_to_lock(int folder, const char* name) {
+int open_to_lock(const char* path) {
   constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  const int file = ::openat(folder, name, O_RDWR | kFlags);
-  return file >= 0 ? file : ::openat(folder, name, O_RDONLY | kFlags);
+  const int file = ::open(path, O_RDWR | kFlags);
+  return file >= 0 ? file : ::open(path, O_RDONLY | kFlags);
 }
 
 // Uses readdir(), because std::filesystem aborts if memory runs out and throws if a folder cannot
-// be read to its end. Files that cannot be removed stay. Locks work across containers.
+// be read to its end.
+FolderNames read_folder(const fs::path& folder) {
+  FolderNames names;
+  const std::unique_ptr<DIR, CloseDirectory> entries(::opendir(folder.c_str()));
+  if (!entries) return names;
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the folder is read by nobody else
+  while (const dirent* entry = ::readdir(entries.get())) names.add(entry->d_name);
+  return names;
+}
+
+// Files that cannot be removed stay. Locks work across containers.
 void sweep(const fs::path& folder, std::string_view name) {
   const std::string prefix = temporary_prefix(name);
-  const std::unique_ptr<DIR, CloseDirectory> entries(::opendir(folder.c_str()));
-  if (!entries) return;
-  const int at = ::dirfd(entries.get());
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): the folder is read by nobody else
-  while (const dirent* entry = ::readdir(entries.get())) {
-    if (!is_temporary_name(entry->d_name, prefix)) continue;
-    const int file = open_to_lock(at, entry->d_name);
+  for (const FileName& left :
+       folder_sweep().take(folder, prefix, [&] { return read_folder(folder); })) {
+    if (!is_temporary_name(left, prefix)) continue;
+    const fs::path path = folder / left;
+    const int file = open_to_lock(path.c_str());
     if (file < 0) continue;
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlinkat(at, entry->d_name, 0);
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
     ::close(file);
   }
 }

@@ -13,6 +13,7 @@
 
 #include "cooker/system/path.h"
 #include "cooker/system/write_failure.h"
+#include "cooker/write/folder_sweep.h"
 #include "cooker/write/temporary_file.h"
 #include "cooker/write/temporary_name.h"
 #include "runtime/file/windows_path.h"
@@ -34,18 +35,24 @@ Error cannot_create(const fs::path& folder, const std::string& name, DWORD reaso
                       std::system_category().message(static_cast<int>(reason)))};
 }
 
+FolderNames read_folder(const fs::path& folder) {
+  FolderNames names;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    names.add(entry->path().filename().native());
+  }
+  return names;
+}
+
 // Files that cannot be deleted stay. Others may have names that no text stands for: halves of
 // surrogate pairs.
 void sweep(const fs::path& folder, const std::string& name) {
   const std::string prefix = temporary_prefix(name);
-  const std::wstring wide_prefix = named_path(prefix).native();
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const fs::path found = entry->path().filename();
-    if (!found.native().starts_with(wide_prefix)) continue;
-    if (!is_temporary_name(found.string(), prefix)) continue;
-    static_cast<void>(::DeleteFileW(wide_path(entry->path().string()).c_str()));
+  for (const FileName& left : folder_sweep().take(folder, named_path(prefix).native(),
+                                                  [&] { return read_folder(folder); })) {
+    if (!is_temporary_name(fs::path(left).string(), prefix)) continue;
+    static_cast<void>(::DeleteFileW(wide_path((folder / left).string()).c_str()));
   }
 }
 

@@ -19,7 +19,6 @@
 namespace boxtree::cooker {
 namespace {
 
-constexpr std::string_view kSuffix = ".cooking";
 constexpr std::size_t kRandomDigits = 16;
 constexpr std::size_t kLongestName = 200;  // of the target: a file name has at most 255 bytes
 
@@ -54,16 +53,16 @@ std::string temporary_prefix(std::string_view target) {
 }
 
 bool is_temporary_name(std::string_view name, std::string_view prefix) {
-  if (name.size() != prefix.size() + kRandomDigits + kSuffix.size()) return false;
+  if (name.size() != prefix.size() + kRandomDigits + kTemporaryEnding.size()) return false;
   const std::string_view digits = name.substr(prefix.size(), kRandomDigits);
-  return name.starts_with(prefix) && name.ends_with(kSuffix) &&
+  return name.starts_with(prefix) && name.ends_with(kTemporaryEnding) &&
          digits.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
 std::string temporary_name(std::string_view target) {
   const std::optional<std::uint64_t> random = random_number();
   if (!random) return {};
-  return fmt::format("{}{:016x}{}", temporary_prefix(target), *random, kSuffix);
+  return fmt::format("{}{:016x}{}", temporary_prefix(target), *random, kTemporaryEnding);
 }
 
 }  // namespace boxtree::cooker

@@ -7,6 +7,9 @@
 
 namespace boxtree::cooker {
 
+/// What all unfinished files end with.
+inline constexpr std::string_view kTemporaryEnding = ".cooking";
+
 /// What all unfinished files of one target begin with.
 [[nodiscard]] std::string temporary_prefix(std::string_view target);
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "cooker/write/folder_sweep.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "cooker/write/temporary_name.h"
+
+namespace boxtree::cooker {
+namespace {
+
+// Takes out those that begin with `prefix`.
+std::vector<FileName> taken(std::vector<FileName>& names, FileNameView prefix) {
+  const auto first = std::stable_partition(
+      names.begin(), names.end(), [&](const FileName& name) { return !name.starts_with(prefix); });
+  std::vector<FileName> out(std::make_move_iterator(first), std::make_move_iterator(names.end()));
+  names.erase(first, names.end());
+  return out;
+}
+
+}  // namespace
+
+void FolderNames::add(FileNameView name) {
+  static const FileName kEnding = std::filesystem::path(kTemporaryEnding).native();
+  ++count;
+  if (name.starts_with(FileName::value_type{'.'}) && name.ends_with(kEnding)) {
+    unfinished.emplace_back(name);
+  }
+}
+
+std::vector<FileName> FolderSweep::take(const std::filesystem::path& folder, FileNameView prefix,
+                                        const Read& read) {
+  const std::lock_guard lock(mutex_);
+  const auto known = folders_.find(folder.native());
+  if (known != folders_.end() && known->second.files * kNamesPerFile < known->second.names.count) {
+    ++known->second.files;
+    return taken(known->second.names.unfinished, prefix);
+  }
+  FolderNames names = read();
+  std::vector<FileName> out = taken(names.unfinished, prefix);
+  if (names.count > kNamesPerFile) {
+    folders_[folder.native()] = {std::move(names), 1};
+  } else if (known != folders_.end()) {
+    folders_.erase(known);
+  }
+  return out;
+}
+
+FolderSweep& folder_sweep() {
+  static FolderSweep sweep;
+  return sweep;
+}
+
+}  // namespace boxtree::cooker
