@@ -13,8 +13,7 @@
 
 namespace boxtree {
 
-void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
-                     std::uint32_t half) noexcept {
+void CastQuery::test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) {
   // The bounds are a lower bound of the touch, too: beginning there makes it agree with every key
   // above.
   const SlabInterval interval = slab.intersect(bounds_of(triangle));
@@ -55,7 +54,7 @@ void CastQuery::set_triangle(const Triangle& triangle, std::uint32_t face_index,
   found.inactive = placed->inactive;
 }
 
-void CastQuery::take(CastCandidate& found) noexcept {
+void CastQuery::take(CastCandidate& found) {
   const double scale = scale_of_parameters();
   if (visitor != nullptr) {
     error = faces.visit_wanted(tree, found.original, t_max, names, [&](const FaceRef& face) {

@@ -104,7 +104,7 @@ struct CastQuery : RayInTree {
 
   [[nodiscard]] double bound() const noexcept { return t_max; }
 
-  [[nodiscard]] bool leaf(NodeRef ref) noexcept {
+  [[nodiscard]] bool leaf(NodeRef ref) {
     error = tree.leaves().read(ref.first, ref.second, batch);
     if (error != Errc::kOk) return false;
     for (std::uint32_t i = 0; i < batch.count && !is_done(); ++i) {
@@ -118,14 +118,14 @@ struct CastQuery : RayInTree {
     return faces.stopped || error != Errc::kOk || (wanted == Wanted::kAny && best.is_hit);
   }
 
-  void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept;
+  void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half);
 
   /// What test() is made of, for walks that find touches of several triangles together. Fills in
   /// which triangle a touch is of. `found`: as it is when it is made.
   void set_triangle(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half,
                     CastCandidate& found) const noexcept;
   /// Takes a touch, which `found` holds.
-  void take(CastCandidate& found) noexcept;
+  void take(CastCandidate& found);
 
   const BoundTree& tree;
   WalkBound& nodes;

@@ -21,8 +21,7 @@ struct FaceWishes {
 
   /// Names the first of face `index` of the tree's order and its copies that the filter accepts;
   /// false if it accepts none. Precondition: has_filter().
-  [[nodiscard]] bool name_wanted(const BoundTree& tree, std::uint32_t index,
-                                 FaceRef& face) const noexcept {
+  [[nodiscard]] bool name_wanted(const BoundTree& tree, std::uint32_t index, FaceRef& face) const {
     const FaceWithCopies faces(tree, index);
     for (std::uint32_t i = 0; i < faces.count(); ++i) {
       face = faces.face(i);

@@ -46,7 +46,7 @@ bool admits_side(const RayTest& query, const Triangle& triangle) noexcept {
 
 }  // namespace
 
-bool meet_wishes(RayTest& query, RayCandidate& candidate) noexcept {
+bool meet_wishes(RayTest& query, RayCandidate& candidate) {
   FaceWishes& faces = query.wishes->faces;
   if (faces.stopped || !admits_side(query, candidate.triangle)) return false;
   const std::uint32_t index = candidate.face.index;

@@ -113,7 +113,7 @@ struct RayTest;
 struct RayWishes {
   /// Whether the candidate is to be kept, with a face that is wanted. Where all hits are, visits
   /// it. A pointer, so that programs that have no wishes do not link it.
-  using Meet = bool(RayTest& ray, RayCandidate& candidate) noexcept;
+  using Meet = bool(RayTest& ray, RayCandidate& candidate);
   /// Receives every hit, named; returns the largest parameter that is still of interest, or a
   /// negative number to stop.
   using Visitor = FunctionRef<double(const RayTest& ray, const RayCandidate& found)>;
@@ -150,7 +150,7 @@ struct RayTest : RayInTree {
            (wishes != nullptr && wishes->faces.stopped);
   }
 
-  void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept {
+  void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) {
     const SlabInterval interval = slab.intersect(bounds_of(triangle));
     if (interval.enter > interval.leave) return;
     const std::optional<RayTriangleHit> found = intersect_ray_triangle(shear, triangle);
@@ -202,7 +202,7 @@ struct RayQuery : RayTest {
 
   [[nodiscard]] double bound() const noexcept { return t_max; }
 
-  [[nodiscard]] bool leaf(NodeRef ref) noexcept {
+  [[nodiscard]] bool leaf(NodeRef ref) {
     error = tree.leaves().read(ref.first, ref.second, batch);
     if (error != Errc::kOk) return false;
     for (std::uint32_t i = 0; i < batch.count; ++i) {
@@ -219,7 +219,7 @@ struct RayQuery : RayTest {
 Errc walk_wide(const BoundTree& tree, RayQuery& query);
 
 /// The RayWishes::Meet of callers that have any.
-[[nodiscard]] bool meet_wishes(RayTest& ray, RayCandidate& candidate) noexcept;
+[[nodiscard]] bool meet_wishes(RayTest& ray, RayCandidate& candidate);
 
 /// The field of a ray that is not valid: the direction, whose largest component is `length`, unless
 /// it is finite and not zero, or an end of the interval; null if there is none. The origin is

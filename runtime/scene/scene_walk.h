@@ -35,7 +35,7 @@ struct Admission {
   const InstanceFilter* filter = nullptr;  // null: every instance
 
   /// Not inlined: each query has several.
-  [[nodiscard]] bool admits(std::uint32_t instance, std::uint32_t layer) const noexcept;
+  [[nodiscard]] bool admits(std::uint32_t instance, std::uint32_t layer) const;
 };
 
 /// What is known of a query that visits instances one after the other.

@@ -17,7 +17,7 @@ enum class BackFaces : std::uint8_t {
 };
 
 /// Whether a face may be hit; called with each candidate, named as in answers. It must answer alike
-/// whenever it is called, and may not throw. Borrowed, like all callables: a lambda that is stored
+/// whenever it is called. Borrowed, like all callables: a lambda that is stored
 /// in FaceOptions needs a name of its own, and one without does not compile.
 using FaceFilter = NamedFunctionRef<bool(const FaceRef&)>;
 

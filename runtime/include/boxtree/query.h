@@ -66,7 +66,8 @@ class [[nodiscard]] QueryResult {
   bool has_value_ = false;
 };
 
-/// A borrowed callable: no allocation, valid during the call it is passed to.
+/// A borrowed callable: no allocation, valid during the call it is passed to. What it throws ends
+/// that call and passes to the caller.
 template <class Signature>
 class FunctionRef;
 /// A borrowed callable that takes `Args` and returns `R`.
