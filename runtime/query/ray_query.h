@@ -104,7 +104,7 @@ struct RayInTree {
 /// Converts a parameter of the query to one of the ray. Clamped to the ray's own interval, as
 /// conversion may underflow, for example for a subnormal direction.
 [[nodiscard]] inline double parameter_of(const Ray& ray, double scaled, int exponent) noexcept {
-  return std::clamp(RayInTree::scaled(scaled, -exponent), ray.t_min, ray.t_max);
+  return std::clamp(RayInTree::scaled(scaled, -exponent), ray.t_min, ray.t_max) + 0.0;  // not -0
 }
 
 struct RayTest;

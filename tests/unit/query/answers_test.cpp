@@ -221,6 +221,31 @@ TEST_P(Answers, OfPartsOfAFaceAreThoseOfEveryCodec) {
   EXPECT_GT(hits, 500);
 }
 
+// Found by a newcomer: -0 is equal to 0, but not in what is printed or divided by.
+TEST_P(Answers, ARayThatBeginsOnAFaceHitsItAtZeroNotAtMinusZero) {
+  SourceMesh mesh;
+  mesh.positions.f32 = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  std::size_t hits = 0;
+  for (const double z : {0.0, -0.0}) {
+    for (const double direction : {-1.0, 1.0}) {
+      for (const Eigen::Vector3d& origin : {Eigen::Vector3d(0.25, 0.125, z),
+                                            Eigen::Vector3d(0.5, 0, z), Eigen::Vector3d(0, 0, z)}) {
+        const Ray ray{origin, {0.1, 0.2, direction}};
+        for (const RayResult& hit : {closest_hit(cooked.tree, ray), any_hit(cooked.tree, ray)}) {
+          if (!hit) continue;
+          ++hits;
+          EXPECT_EQ(hit->t, 0);
+          EXPECT_FALSE(std::signbit(hit->t));
+          EXPECT_FALSE(std::signbit(hit->u) || std::signbit(hit->v));
+        }
+      }
+    }
+  }
+  EXPECT_GT(hits, 12u);
+}
+
 TEST(Visitors, CanBeFreeFunctions) {
   const test::CookedTree cooked = test::cook_tree(test::sphere(8, 8), CodecId::kWide8);
   g_told = 0;
