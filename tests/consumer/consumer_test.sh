@@ -53,6 +53,16 @@ done
 { cmake -S "$pages/samples/c" -B "$work/sample" -DCMAKE_PREFIX_PATH="$work/prefix" && cmake --build "$work/sample"; } \
   >"$work/log" 2>&1 || { cat "$work/log"; fail "samples/c is no project of its own"; }
 for program in first_ray tour; do [ -x "$work/sample/$program" ] || fail "samples/c does not make $program"; done
+# Found by a newcomer: a plugin exported all that it has of the archives, which those of another plugin could take the place of.
+mkdir -p "$work/plugin"
+printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(plugin LANGUAGES CXX)' 'find_package(boxtree CONFIG REQUIRED)' \
+  'add_library(plugin MODULE plugin.cpp)' 'target_link_libraries(plugin PRIVATE boxtree::runtime)' >"$work/plugin/CMakeLists.txt"
+printf '%s\n' '#include <boxtree/boxtree.h>' 'extern "C" bool begin() { return boxtree::File::open("level.bxt").ok(); }' >"$work/plugin/plugin.cpp"
+{ cmake -S "$work/plugin" -B "$work/plugin/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" &&
+  cmake --build "$work/plugin/build"; } >"$work/log" 2>&1 || { cat "$work/log"; fail "a plugin"; }
+nm -DC --defined-only "$work/plugin/build/libplugin.so" >"$work/exported"
+grep -q ' T begin$' "$work/exported" || fail "a plugin exports nothing"
+if grep ' [TDBR] boxtree::' "$work/exported"; then fail "a plugin exports what it has of the archives"; fi
 # Found by a newcomer: ninja stops reading a depfile at some characters, and cooked such meshes again each time.
 mkdir -p "$work/r&d"
 cp "$work/samples/meshes/crate.obj" "$work/samples/meshes/crate.mtl" "$work/r&d"
