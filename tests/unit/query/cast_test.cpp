@@ -615,8 +615,9 @@ TEST(CastAlongAFace, IsNotLate) {
             return false;
           }).ok());
       EXPECT_TRUE(touches) << hit->t_lower << " " << hit->t;
-      if (!hit->initially_touching)
+      if (!hit->initially_touching) {
         EXPECT_LT((hit->t - hit->t_lower) * motion.direction.norm(), 1e-3);
+      }
     };
     check(cast_closest(cooked.tree, Sphere{from, radius}, motion),
           [&](const Eigen::Vector3d& center, double reach, const auto& visit) {
