@@ -23,6 +23,10 @@ Error read_failure(const std::string& path, int reason, const std::string& named
   if (path.empty()) {
     return {Errc::kFileNotFound, "expected the name of a file, found an empty one"};
   }
+  if (path.starts_with("\211BXT")) {  // as kMagic does: not what a log should be given
+    return {Errc::kFileNotFound,
+            "expected the name of a file, found the bytes of one: pass them as Bytes"};
+  }
   if (reason == ENOENT || reason == ENOTDIR) {
     if (!named_in.empty()) {
       return error_at(error_with(Errc::kFileNotFound, path, ": no such file; names in ").detail,

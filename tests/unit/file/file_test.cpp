@@ -67,6 +67,10 @@ TEST(FileOpen, MissingFileHasOneMessage) {
             "current folder");
   EXPECT_EQ(File::open("").error().message(),
             "file_not_found: expected the name of a file, found an empty one");
+  // Found by a newcomer: a string of what a file holds is taken for its name.
+  EXPECT_EQ(File::open(cooked_text()).error().message(),
+            "file_not_found: expected the name of a file, found the bytes of one: pass them as "
+            "Bytes");
 }
 
 TEST(FileOpen, NamesAreUtf8) {
