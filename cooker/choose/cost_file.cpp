@@ -116,6 +116,11 @@ Result<Calibration> parse_costs(std::string_view text) {
   const ParsedJson parsed = parse_json(text);
   if (parsed.fault != ParsedJson::Fault::kNone)
     return fault("expected JSON, as `bench --calibrate --json` prints it");
+  const Json* const schema = parsed.value.find("schema");
+  if (schema != nullptr && (!schema->is_number() || schema->get<double>() != kJsonSchema)) {
+    return fault(fmt::format("expected \"schema\": {}, found {}: as another version prints it",
+                             kJsonSchema, schema->dump()));
+  }
   const Json* const rows = parsed.value.find("costs");
   if (rows == nullptr || !rows->is_array()) {
     return fault(

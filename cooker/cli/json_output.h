@@ -12,9 +12,6 @@
 
 namespace boxtree::cooker {
 
-/// Of all documents of this program (docs/JSON.md).
-inline constexpr int kJsonSchema = 1;
-
 /// Prints one JSON document to standard output, behind the number of the schema that all documents
 /// of this program follow (docs/JSON.md): keys may be added under it, none is renamed. Bytes that
 /// are no UTF-8 become U+FFFD.

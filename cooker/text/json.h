@@ -15,6 +15,9 @@
 
 namespace boxtree::cooker {
 
+/// Of all documents of this program (docs/JSON.md).
+inline constexpr int kJsonSchema = 1;
+
 /// A value of JSON; members of objects stay in the order in which they were added. Built from lists
 /// in braces: one of pairs that begin with a text is an object, any other an array.
 class Json {

@@ -94,6 +94,11 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
             "costs: expected \"speed_ratio\", 1 or more, found \"1\"");
   EXPECT_EQ(refusal([](Json& j) { j["worst_ratio"] = 0.5; }),
             "costs: expected \"worst_ratio\", 1 or more, found 0.5");
+  for (const char* schema : {"2", "\"1\"", "null", "1.5"}) {
+    EXPECT_EQ(refusal([&](Json& j) { j["schema"] = Json::parse(schema); }),
+              std::string("costs: expected \"schema\": 1, found ") + schema +
+                  ": as another version prints it");
+  }
   EXPECT_EQ(parse_costs("{").error().detail,
             "costs: expected JSON, as `bench --calibrate --json` prints it");
   // Numbers that double cannot hold.
