@@ -438,6 +438,7 @@ class Cook {
 
   void place_trees() {
     SceneParts& parts = file_.scene.emplace();
+    parts.profile = profile_.path.string();
     parts.queries = plan_.queries;
     number_materials(parts.materials);
     std::vector<std::uint32_t> tree_of_mesh(plan_.meshes.size(), 0);
@@ -453,8 +454,10 @@ class Cook {
       const PlannedInstance& planned = plan_.instances[i];
       if (!planned.kept) continue;
       const SceneInstance& source = input_.scene.instances[i];
+      const bool is_listed = source.id < profile_.instances.size();
       parts.instances.push_back({tree_of_mesh[source.mesh], source.id, planned.layer, planned.moves,
-                                 planned.names ? source.name : std::string(), source.pose});
+                                 planned.names ? source.name : std::string(), source.pose,
+                                 std::nullopt, is_listed ? profile_.instances[source.id].line : 0});
     }
     for (const PlannedLayer& layer : plan_.layers) {
       parts.layers.push_back({layer.name, layer.collides_with, layer.queries});

@@ -596,12 +596,14 @@ std::string why_text(const Summary& summary) {
 }
 
 Error explained(const Error& error, const CookJob& job, const std::string& output) {
-  if (error.code == Errc::kInvalidPose) {
-    return {error.code,
-            error.detail + "; --flatten makes one tree of a file, whatever its transforms"};
-  }
   const std::string profile = job.profile.string();
   const bool is_of_profile = !profile.empty() && error.detail.starts_with(profile + ":");
+  if (error.code == Errc::kInvalidPose) {
+    if (!profile.empty()) return is_of_profile ? error : in_file(profile, error);
+    const Error advised = {
+        error.code, error.detail + "; --flatten makes one tree of a file, whatever its transforms"};
+    return job.inputs.size() == 1 ? in_file(input_name(job.inputs[0]), advised) : advised;
+  }
   if (error.code == Errc::kBudgetUnreachable && !is_of_profile) return in_file(output, error);
   return error;
 }

@@ -53,9 +53,12 @@ class SceneEncoder {
       const std::optional<Placement> placed = Placement::make(frame, instance.pose);
       const auto bounds = placed ? placed->bounds(tree.nodes.root_box) : std::nullopt;
       if (!bounds) {
-        return Error{Errc::kInvalidPose,
-                     fmt::format("instance {} '{}': its transform {}", instance.id, instance.name,
-                                 pose_fault(instance.pose))};
+        return Error{
+            Errc::kInvalidPose,
+            fmt::format("{}instance {} '{}': its transform {}",
+                        instance.line == 0 ? std::string()
+                                           : fmt::format("{}:{}: ", parts_.profile, instance.line),
+                        instance.id, instance.name, pose_fault(instance.pose))};
       }
       if (instance.moves) {
         order_.push_back(i);

@@ -27,6 +27,7 @@ struct PlacedTree {
   std::string name;  // empty when names are left out
   Pose pose = Pose::Identity();
   std::optional<std::uint32_t> edge_list;  // of SceneParts, of one at rest
+  std::uint32_t line = 0;                  // of SceneParts::profile that places it; 0: none does
 };
 
 struct SceneLayer {
@@ -43,6 +44,7 @@ struct LeftOutPart {
 };
 
 struct SceneParts {
+  std::string profile;  // for messages; empty: none
   QueryKinds queries = kAllQueries;
   std::vector<PlacedTree> instances;
   std::vector<SceneLayer> layers;

@@ -399,6 +399,10 @@ says 1 'instance_index: level.bxt: --move: no instance is named "Crata"; did you
 # shellcheck disable=SC2086
 says 1 'instance_index: parts.bxt: --move 52: expected a number from 0 to 51' parts.bxt $ray --move 52=0,0,0
 # The last instance of the source leaves no gap, so the file does not show that a profile left it out.
+# Found by a newcomer: the transform of a profile was named without its line, with an option that profiles exclude.
+printf '%s\n' '[[mesh]]' 'name = "m"' 'file = "big.obj"' '[[instance]]' 'mesh = "m"' 'translation = [1e100, 0, 0]' >far.toml
+expect 1 "$boxtree" cook --profile far.toml -o far.bxt -q
+grep -qx "boxtree: invalid_pose: far.toml:4: instance 0 '.*': its transform leads too far away: coordinates may be 2^185 mesh extents" err
 printf '[scene]\nsource = "level.gltf"\n[[object]]\nname = "crate"\nmatch = ["Crate"]\nleave_out = true\n' >crateless.toml
 expect 0 "$boxtree" cook --profile crateless.toml -o crateless.bxt --why
 grep -q 'object crate .*crateless.toml:6: leave_out = true' out
