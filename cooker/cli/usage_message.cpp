@@ -29,9 +29,6 @@ const Command& innermost(const CLI::App& program) {
 
 // What other programs call commands and options of ours; both in one list, since options begin
 // with "--".
-struct Synonym {
-  std::string_view word, name;
-};
 constexpr Synonym kSynonyms[] = {
     {"build", "cook"},       {"convert", "cook"},    {"check", "verify"},
     {"validate", "verify"},  {"list", "info"},       {"show", "info"},
@@ -43,11 +40,8 @@ constexpr Synonym kSynonyms[] = {
 
 // "; did you mean 'point'?" of "nearest", where there is such a name; empty if not.
 std::string synonym_suggestion(std::string_view word, const std::vector<std::string>& names) {
-  for (const Synonym& synonym : kSynonyms) {
-    if (synonym.word != word || std::ranges::find(names, synonym.name) == names.end()) continue;
-    return fmt::format("; did you mean '{}'?", synonym.name);
-  }
-  return {};
+  const std::string meant = synonym_of(word, kSynonyms, names);
+  return meant.empty() ? meant : fmt::format("; did you mean '{}'?", meant);
 }
 
 std::vector<std::string> command_names(const Command& command) {

@@ -128,6 +128,13 @@ void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan&
     plan.instances.push_back(
         {kept, o, kept ? layer[o] : 0, object.moves.value, kept && object.needs.names.value});
   }
+  const bool is_all_dropped =
+      !objects.empty() && std::ranges::none_of(plan.instances, &PlannedInstance::kept);
+  if (is_all_dropped) {
+    const ProfileObject& first = profile.objects[objects.front()];
+    plan.notices.push_back(fmt::format("{}: no instance of the scene is kept",
+                                       profile.cite(line_that_drops(first).value_or(0))));
+  }
 }
 
 bool never_collide(const ProfileObject& object, std::uint32_t other) {

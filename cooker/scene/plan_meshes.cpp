@@ -109,9 +109,8 @@ Status MeshPlanner::find_statements() {
     if (std::find(names.begin(), names.end(), mesh.name.value) != names.end()) continue;
     if (!mesh.file) {
       return error(mesh.name.line,
-                   fmt::format("name: expected a mesh of the source (nearest: \"{}\"), found "
-                               "\"{}\"",
-                               nearest_name(mesh.name.value, names), mesh.name.value));
+                   fmt::format("name: expected a mesh of the source{}, found \"{}\"",
+                               nearest_in_words(mesh.name.value, names), mesh.name.value));
     }
     plan_.notices.push_back(fmt::format(
         "{}: mesh \"{}\" equals another one, under whose name it is stored; what is said here "

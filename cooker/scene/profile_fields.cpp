@@ -21,10 +21,25 @@ std::optional<double> number_in(const TomlNode& node) {
   return number != nullptr && std::isfinite(*number) ? std::optional(*number) : std::nullopt;
 }
 
+// What other programs call keys and values of profiles.
+constexpr Synonym kSynonyms[] = {
+    {"position", "translation"}, {"location", "translation"}, {"quaternion", "rotation"},
+    {"transform", "matrix"},     {"pose", "matrix"},          {"path", "file"},
+    {"grid_bits", "tolerance"},  {"exclude", "leave_out"},    {"skip", "leave_out"},
+    {"move", "motion"},          {"moving", "motion"},        {"dynamic", "moving"},
+    {"kinematic", "moving"},     {"moves", "moving"},         {"size", "memory"},
+    {"small", "memory"},         {"fast", "speed"},
+};
+
+// `wording` may list the names itself.
 std::string with_nearest(std::string_view wording, std::string_view name,
                          std::span<const std::string> names) {
-  if (names.empty()) return fmt::format("{} (there are none)", wording);
-  return fmt::format("{} (nearest: \"{}\")", wording, nearest_name(name, names));
+  const std::string synonym = synonym_of(name, kSynonyms, names);
+  if (!synonym.empty()) return fmt::format("{} (nearest: \"{}\")", wording, synonym);
+  if (!names.empty() && wording == listed(names) && near_name(name, names).empty()) {
+    return std::string(wording);
+  }
+  return std::string(wording) + nearest_in_words(name, names);
 }
 
 }  // namespace
@@ -60,7 +75,7 @@ Status Complaints::status() const {
 }
 
 const TomlEntry* Fields::find(std::string_view key) {
-  known_.emplace_back(key);
+  if (!knows(key)) known_.emplace_back(key);
   const auto found = std::find_if(table_.begin(), table_.end(),
                                   [&](const TomlEntry& entry) { return entry.key == key; });
   return found == table_.end() ? nullptr : &*found;
@@ -95,7 +110,12 @@ std::optional<Stated<std::uint64_t>> Fields::count(std::string_view key) {
   if (value != nullptr && *value >= 1) {
     return Stated<std::uint64_t>{static_cast<std::uint64_t>(*value), entry->line};
   }
-  complaints_.expected(entry->line, key, "a whole number of 1 or more", shown(entry->node));
+  const auto* number = std::get_if<double>(&entry->node.value);
+  const bool is_spelt = number == nullptr || *number != std::floor(*number) || *number < 1;
+  complaints_.expected(
+      entry->line, key,
+      is_spelt ? "a whole number of 1 or more" : "a whole number without a point or an exponent",
+      shown(entry->node));
   return std::nullopt;
 }
 

@@ -42,6 +42,22 @@ std::string nearest_name(std::string_view name, std::span<const std::string> nam
   return nearest == names.end() ? std::string() : *nearest;
 }
 
+std::string near_name(std::string_view name, std::span<const std::string> names) {
+  const std::string nearest = nearest_name(name, names);
+  const std::size_t distance = edit_distance(name, nearest);
+  const bool is_near = distance <= std::max<std::size_t>(name.size() / 3, 1) &&
+                       distance < std::max(name.size(), nearest.size());  // something is common
+  return is_near ? nearest : std::string();
+}
+
+std::string synonym_of(std::string_view word, std::span<const Synonym> synonyms,
+                       std::span<const std::string> names) {
+  const auto found = std::ranges::find_if(synonyms, [&](const Synonym& synonym) {
+    return synonym.word == word && std::ranges::find(names, synonym.name) != names.end();
+  });
+  return found == synonyms.end() ? std::string() : std::string(found->name);
+}
+
 std::string listed(std::span<const std::string> names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -69,11 +85,16 @@ std::string did_you_mean(const std::string& name) {
 }  // namespace
 
 std::string suggestion(std::string_view name, std::span<const std::string> names) {
-  const std::string nearest = nearest_name(name, names);
-  const std::size_t distance = edit_distance(name, nearest);
-  const bool is_near = distance <= std::max<std::size_t>(name.size() / 3, 1) &&
-                       distance < std::max(name.size(), nearest.size());  // something is common
-  return is_near && !nearest.empty() ? did_you_mean(nearest) : std::string();
+  const std::string near = near_name(name, names);
+  return near.empty() ? near : did_you_mean(near);
+}
+
+std::string nearest_in_words(std::string_view name, std::span<const std::string> names) {
+  constexpr std::size_t kMost = 32;
+  if (names.empty()) return " (there are none)";
+  const std::string near = near_name(name, names);
+  if (!near.empty()) return " (nearest: \"" + near + "\")";
+  return names.size() > kMost ? std::string() : " (" + listed(names) + ")";
 }
 
 std::string path_suggestion(std::string_view name, std::span<const std::string> names) {

@@ -18,6 +18,17 @@ namespace boxtree::cooker {
 /// The first of `names` with the least distance; empty if there are none.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string> names);
 
+/// The same; empty, too, if more than a third of the letters would change, or all of them.
+[[nodiscard]] std::string near_name(std::string_view name, std::span<const std::string> names);
+
+/// What other programs call what is called `name` here.
+struct Synonym {
+  std::string_view word, name;
+};
+/// The name of the first synonym for `word` that is one of `names`; empty if there is none.
+[[nodiscard]] std::string synonym_of(std::string_view word, std::span<const Synonym> synonyms,
+                                     std::span<const std::string> names);
+
 /// "ray, box or point".
 [[nodiscard]] std::string listed(std::span<const std::string> names);
 
@@ -25,8 +36,12 @@ namespace boxtree::cooker {
 [[nodiscard]] std::string joined(std::span<const std::string> words,
                                  std::string_view between = " ");
 
-/// "; did you mean 'query'?" with the nearest of `names`; empty if more than a third of the letters
-/// would change, or all of them.
+/// Behind what was expected: " (nearest: \"ray\")" with near_name(), otherwise " (ray, box or
+/// point)" of at most 32 names; " (there are none)".
+[[nodiscard]] std::string nearest_in_words(std::string_view name,
+                                           std::span<const std::string> names);
+
+/// "; did you mean 'query'?" with near_name(); empty if there is none.
 [[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> names);
 
 /// The same of names that may be paths: also with the first of which `name` is the last part.

@@ -204,6 +204,15 @@ leave_out = true
   EXPECT_FALSE(has_decision(planned, Aspect::kFaceIds, OwnerKind::kMesh, 1));
 }
 
+// Found by a newcomer: a pattern that leaves out everything made an empty scene without a word.
+TEST_F(PlanTest, ASceneOfWhichNothingIsKeptIsNoticed) {
+  const ScenePlan planned =
+      plan(forest(), "[[object]]\nname = 'all'\nmatch = ['*']\nleave_out = true\n");
+  EXPECT_EQ(
+      planned.notices,
+      std::vector<std::string>{"scene.toml:4: leave_out = true: no instance of the scene is kept"});
+}
+
 TEST_F(PlanTest, WhatAnswersNoQueryIsDropped) {
   const ScenePlan planned = plan(forest(), R"([[object]]
 name = "backdrop"

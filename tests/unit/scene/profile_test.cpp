@@ -332,9 +332,11 @@ constexpr ProfileFault kNames[] = {
      "scene.toml:2: [scene]: expected a known key (nearest: \"tolerance\"), found \"tolerence\""},
     {"[[object]]\nname = 'a'\ncodecs = 9\n",
      "scene.toml:3: [[object]]: expected a known key (nearest: \"codec\"), found \"codecs\""},
-    {"[seen]\n",
-     "scene.toml:1: the profile: expected a known key (nearest: \"scene\"), found "
-     "\"seen\""},
+    {"[scene]\n[scenes]\n",
+     "scene.toml:2: the profile: expected a known key (nearest: \"scene\"), found \"scenes\""},
+    {"[level]\n",
+     "scene.toml:1: the profile: expected a known key (scene, budget, contact, mesh, object or "
+     "instance), found \"level\""},
     {"queries = ['ray']\n[budget]\nbytes = 1\n",
      "scene.toml:1: queries: expected it below [scene] or [[object]], found it outside of all "
      "tables"},
@@ -353,14 +355,33 @@ constexpr ProfileFault kNames[] = {
     {"[[object]]\nname = 'a'\ndegrees = 30\n",
      "scene.toml:3: [[object]]: expected a key of this table, found \"degrees\", a key of "
      "[[instance]]"},
-    {"[[seen]]\nexact = true\n",
-     "scene.toml:1: the profile: expected a known key (nearest: \"scene\"), found \"seen\""},
+    {"[[scen]]\nexact = true\n",
+     "scene.toml:1: the profile: expected a known key (nearest: \"scene\"), found \"scen\""},
     {"[budget]\nbyte = 1\n",
      "scene.toml:2: [budget]: expected a known key (nearest: \"bytes\"), found \"byte\""},
     {"[contact]\nstiffness = 1\nmass = 1\nmas = 1\n",
      "scene.toml:4: [contact]: expected a known key (nearest: \"mass\"), found \"mas\""},
     {"[[object]]\nname = 'a'\nmove = true\n",
-     "scene.toml:3: [[object]]: expected a known key (nearest: \"name\"), found \"move\""},
+     "scene.toml:3: [[object]]: expected a known key (nearest: \"motion\"), found \"move\""},
+    {"[[object]]\nname = 'a'\nbouncy = true\n",
+     "scene.toml:3: [[object]]: expected a known key (name, match, motion, never_collides_with, "
+     "leave_out, queries, face_ids, materials, names, tolerance, exact, largest_scale, codec, for, "
+     "external, stiffness, mass, gravity, jump or invisible), found \"bouncy\""},
+    // Found by a newcomer: the nearest name was one of another meaning, or of the opposite one.
+    {"[[object]]\nname = 'a'\nexclude = true\n",
+     "scene.toml:3: [[object]]: expected a known key (nearest: \"leave_out\"), found \"exclude\""},
+    {"[[object]]\nname = 'a'\nmotion = 'dynamic'\n",
+     "scene.toml:3: motion: expected static or moving (nearest: \"moving\"), found \"dynamic\""},
+    {"[[object]]\nname = 'a'\nmotion = 'resting'\n",
+     "scene.toml:3: motion: expected static or moving, found \"resting\""},
+    {"[[mesh]]\nname = 'a'\npath = 'a.obj'\n",
+     "scene.toml:3: [[mesh]]: expected a known key (nearest: \"file\"), found \"path\""},
+    {"[[mesh]]\nname='m'\nfile='m'\n[[instance]]\nmesh='m'\nposition=[0,0,1]\n",
+     "scene.toml:6: [[instance]]: expected a known key (nearest: \"translation\"), found "
+     "\"position\""},
+    {"[[mesh]]\nname='m'\nfile='m'\n[[instance]]\nmesh='m'\nquaternion=[0,0,0,1]\n",
+     "scene.toml:6: [[instance]]: expected a known key (nearest: \"rotation\"), found "
+     "\"quaternion\""},
     {"[[mesh]]\nname = 'a'\nflie = 'a.obj'\n",
      "scene.toml:3: [[mesh]]: expected a known key (nearest: \"file\"), found \"flie\""},
     {"[[mesh]]\nname='m'\nfile='m'\n[[instance]]\nmesh='m'\nscales=1\n",
@@ -374,7 +395,7 @@ constexpr ProfileFault kNames[] = {
     {"[scene]\ncodec = 'wide16'\n",
      "scene.toml:2: codec: expected the name of a codec (nearest: \"wide8\"), found \"wide16\""},
     {"[scene]\nfor = 'size'\n",
-     "scene.toml:2: for: expected memory, speed or balance (nearest: \"speed\"), found \"size\""},
+     "scene.toml:2: for: expected memory, speed or balance (nearest: \"memory\"), found \"size\""},
     {"[[object]]\nname = 'a'\nmotion = 'moves'\n",
      "scene.toml:3: motion: expected static or moving (nearest: \"moving\"), found \"moves\""},
     {"[[object]]\nname = 'hero'\nnever_collides_with = ['other',\n'hreo']\n",
@@ -386,11 +407,9 @@ constexpr ProfileFault kNames[] = {
     {"[[instance]]\nmesh='crate'\n",
      "scene.toml:2: mesh: expected the name of a [[mesh]] (there are none), found \"crate\""},
     {"[[mesh]]\nname='m'\nfile='m'\n[[instance]]\nmesh='m'\nobject='hero'\n",
-     "scene.toml:6: object: expected the name of an object (nearest: \"other\"), found "
-     "\"hero\""},
+     "scene.toml:6: object: expected the name of an object (other), found \"hero\""},
     {"[[mesh]]\nname='m'\nspawned_as = 'x'\n",
-     "scene.toml:3: spawned_as: expected the name of an object (nearest: \"other\"), found "
-     "\"x\""},
+     "scene.toml:3: spawned_as: expected the name of an object (other), found \"x\""},
 };
 INSTANTIATE_TEST_SUITE_P(Names, ProfileFaultTest, ::testing::ValuesIn(kNames));
 
