@@ -172,7 +172,7 @@ enum class Visit : std::uint8_t {
 };
 
 /// No limit of the nodes that a query may visit.
-inline constexpr std::uint64_t kUnlimitedNodes = std::numeric_limits<std::uint64_t>::max();
+inline constexpr std::uint64_t kUnlimitedNodes = (std::numeric_limits<std::uint64_t>::max)();
 
 /// What a caller lets one query cost; SECURITY.md states what each may cost without. A query that
 /// would cost more ends with kWorkLimit; what its visitor was given until then is true.
