@@ -166,7 +166,8 @@ class World {
     if (!text) return text.error();
     const auto jobs = parse_manifest(*text, options_.jobs.string());
     const auto is_tile = [](const ManifestLine& job) {
-      return !std::ranges::search(job.options, kTileOptions).empty();
+      return std::search(job.options.begin(), job.options.end(), kTileOptions.begin(),
+                         kTileOptions.end()) != job.options.end();
     };
     if (jobs && std::all_of(jobs->begin(), jobs->end(), is_tile)) return {};
     return Error{Errc::kWriteFailed,

@@ -40,7 +40,9 @@ std::vector<OwnFace> streamed(const fs::path& path, const WorldReading& reading 
   const WorldFaces found =
       require(read_world_faces(path, reading, [&](const WorldFace& face) -> Status {
         faces.push_back({face.id, {face.corners.begin(), face.corners.end()}});
-        EXPECT_FALSE(std::ranges::search(face.of_all_parts, face.corners).empty());
+        EXPECT_NE(std::search(face.of_all_parts.begin(), face.of_all_parts.end(),
+                              face.corners.begin(), face.corners.end()),
+                  face.of_all_parts.end());
         return {};
       }));
   EXPECT_EQ(found.numbers, faces.empty() ? 0 : faces.back().id + 1);
