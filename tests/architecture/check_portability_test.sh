@@ -17,6 +17,9 @@ expect 1 <<'X'
 int file = ::memfd_create("x", 0);
 X
 expect 1 <<'X'
+bool has(auto& a, auto& b) { return !std::ranges::search(a, b).empty() && std::ranges::find(a, 1) != a.end(); }
+X
+expect 1 <<'X'
 #ifdef _WIN32
 #include <unistd.h>
 #endif
