@@ -106,7 +106,8 @@ function(boxtree_add_library name)
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}>)
     boxtree_set_target(${target})
     target_link_libraries(${target} ${arg_LINK})
-    # Nor does a shared library that takes them from an archive export them: two plugins may have different versions.
+    # A shared library exports what BOXTREE_API marks alone, and one that links an archive nothing of it: two plugins
+    # may have different versions.
     set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   endforeach()
   if(arg_PRECOMPILE AND BOXTREE_PRECOMPILE_HEADERS AND NOT CMAKE_UNITY_BUILD)
