@@ -38,12 +38,6 @@ constexpr Synonym kSynonyms[] = {
     {"--threads", "--jobs"}, {"--low", "--min"},     {"--high", "--max"},
 };
 
-// "; did you mean 'point'?" of "nearest", where there is such a name; empty if not.
-std::string synonym_suggestion(std::string_view word, const std::vector<std::string>& names) {
-  const std::string meant = synonym_of(word, kSynonyms, names);
-  return meant.empty() ? meant : fmt::format("; did you mean '{}'?", meant);
-}
-
 std::vector<std::string> command_names(const Command& command) {
   std::vector<std::string> names;
   for (const Command* inner : command.commands()) names.push_back(inner->name());
@@ -127,9 +121,8 @@ std::string meant_option(const std::string& word, const std::vector<std::string>
   std::vector<std::string> longer;
   std::copy_if(names.begin(), names.end(), std::back_inserter(longer),
                [&](const std::string& name) { return name.starts_with(word); });
-  if (longer.size() == 1) return "; did you mean '" + longer.front() + "'?";
-  const std::string synonym = synonym_suggestion(word, names);
-  return synonym.empty() ? suggestion(word, names) : synonym;
+  return longer.size() == 1 ? "; did you mean '" + longer.front() + "'?"
+                            : suggestion(word, names, kSynonyms);
 }
 
 // An option that nobody took.
@@ -293,9 +286,8 @@ std::string unknown_command(const Command& command, const std::string& word) {
     }
   }
   const std::vector<std::string> names = command_names(command);
-  for (const std::string& meant : {synonym_suggestion(word, names), suggestion(word, names)}) {
-    if (!meant.empty()) return start + meant;
-  }
+  const std::string similar = suggestion(word, names, kSynonyms);
+  if (!similar.empty()) return start + similar;
   std::vector<std::string> owners;
   add_owners(command, "--" + word, owners);
   if (!owners.empty()) return start + " but an option; see " + listed(owners);

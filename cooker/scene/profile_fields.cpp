@@ -34,12 +34,9 @@ constexpr Synonym kSynonyms[] = {
 // `wording` may list the names itself.
 std::string with_nearest(std::string_view wording, std::string_view name,
                          std::span<const std::string> names) {
-  const std::string synonym = synonym_of(name, kSynonyms, names);
-  if (!synonym.empty()) return fmt::format("{} (nearest: \"{}\")", wording, synonym);
-  if (!names.empty() && wording == listed(names) && near_name(name, names).empty()) {
-    return std::string(wording);
-  }
-  return std::string(wording) + nearest_in_words(name, names);
+  const std::string nearest = nearest_in_words(name, names, kSynonyms);
+  const bool repeats = !names.empty() && nearest == fmt::format(" ({})", wording);
+  return repeats ? std::string(wording) : std::string(wording) + nearest;
 }
 
 }  // namespace

@@ -42,20 +42,18 @@ std::string nearest_name(std::string_view name, std::span<const std::string> nam
   return nearest == names.end() ? std::string() : *nearest;
 }
 
-std::string near_name(std::string_view name, std::span<const std::string> names) {
+std::string meant_name(std::string_view name, std::span<const std::string> names,
+                       std::span<const Synonym> synonyms) {
+  for (const Synonym& synonym : synonyms) {
+    const bool is_one =
+        synonym.word == name && std::ranges::find(names, synonym.name) != names.end();
+    if (is_one) return std::string(synonym.name);
+  }
   const std::string nearest = nearest_name(name, names);
   const std::size_t distance = edit_distance(name, nearest);
   const bool is_near = distance <= std::max<std::size_t>(name.size() / 3, 1) &&
                        distance < std::max(name.size(), nearest.size());  // something is common
   return is_near ? nearest : std::string();
-}
-
-std::string synonym_of(std::string_view word, std::span<const Synonym> synonyms,
-                       std::span<const std::string> names) {
-  const auto found = std::ranges::find_if(synonyms, [&](const Synonym& synonym) {
-    return synonym.word == word && std::ranges::find(names, synonym.name) != names.end();
-  });
-  return found == synonyms.end() ? std::string() : std::string(found->name);
 }
 
 std::string listed(std::span<const std::string> names) {
@@ -84,16 +82,18 @@ std::string did_you_mean(const std::string& name) {
 
 }  // namespace
 
-std::string suggestion(std::string_view name, std::span<const std::string> names) {
-  const std::string near = near_name(name, names);
-  return near.empty() ? near : did_you_mean(near);
+std::string suggestion(std::string_view name, std::span<const std::string> names,
+                       std::span<const Synonym> synonyms) {
+  const std::string meant = meant_name(name, names, synonyms);
+  return meant.empty() ? meant : did_you_mean(meant);
 }
 
-std::string nearest_in_words(std::string_view name, std::span<const std::string> names) {
+std::string nearest_in_words(std::string_view name, std::span<const std::string> names,
+                             std::span<const Synonym> synonyms) {
   constexpr std::size_t kMost = 32;
   if (names.empty()) return " (there are none)";
-  const std::string near = near_name(name, names);
-  if (!near.empty()) return " (nearest: \"" + near + "\")";
+  const std::string meant = meant_name(name, names, synonyms);
+  if (!meant.empty()) return " (nearest: \"" + meant + "\")";
   return names.size() > kMost ? std::string() : " (" + listed(names) + ")";
 }
 

@@ -18,16 +18,15 @@ namespace boxtree::cooker {
 /// The first of `names` with the least distance; empty if there are none.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string> names);
 
-/// The same; empty, too, if more than a third of the letters would change, or all of them.
-[[nodiscard]] std::string near_name(std::string_view name, std::span<const std::string> names);
-
 /// What other programs call what is called `name` here.
 struct Synonym {
   std::string_view word, name;
 };
-/// The name of the first synonym for `word` that is one of `names`; empty if there is none.
-[[nodiscard]] std::string synonym_of(std::string_view word, std::span<const Synonym> synonyms,
-                                     std::span<const std::string> names);
+
+/// The one of `names` that is probably meant: of the first of `synonyms` that `name` is, or the
+/// nearest; empty if more than a third of the letters would change, or all of them.
+[[nodiscard]] std::string meant_name(std::string_view name, std::span<const std::string> names,
+                                     std::span<const Synonym> synonyms = {});
 
 /// "ray, box or point".
 [[nodiscard]] std::string listed(std::span<const std::string> names);
@@ -36,13 +35,15 @@ struct Synonym {
 [[nodiscard]] std::string joined(std::span<const std::string> words,
                                  std::string_view between = " ");
 
-/// Behind what was expected: " (nearest: \"ray\")" with near_name(), otherwise " (ray, box or
+/// Behind what was expected: " (nearest: \"ray\")" with meant_name(), otherwise " (ray, box or
 /// point)" of at most 32 names; " (there are none)".
 [[nodiscard]] std::string nearest_in_words(std::string_view name,
-                                           std::span<const std::string> names);
+                                           std::span<const std::string> names,
+                                           std::span<const Synonym> synonyms = {});
 
-/// "; did you mean 'query'?" with near_name(); empty if there is none.
-[[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> names);
+/// "; did you mean 'query'?" with meant_name(); empty if there is none.
+[[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> names,
+                                     std::span<const Synonym> synonyms = {});
 
 /// The same of names that may be paths: also with the first of which `name` is the last part.
 [[nodiscard]] std::string path_suggestion(std::string_view name,

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -35,6 +36,26 @@ TEST(NearestName, OfOneMistakeBeginsAlike) {
   const std::array<std::string, 3> shells = {"bash", "zsh", "fish"};
   EXPECT_EQ(nearest_name("fsh", shells), "fish");
   EXPECT_EQ(nearest_name("zsg", shells), "zsh");
+}
+
+TEST(MeantName, IsASynonymOfANameThatThereIsOrANearName) {
+  const std::array<std::string, 3> names = {"cook", "point", "query"};
+  constexpr std::array<Synonym, 3> kSynonyms = {
+      {{"book", "ray"}, {"book", "query"}, {"near", "point"}}};
+  EXPECT_EQ(meant_name("book", names), "cook");
+  EXPECT_EQ(meant_name("book", names, kSynonyms), "query") << "there is no ray";
+  EXPECT_EQ(meant_name("near", names, kSynonyms), "point");
+  EXPECT_EQ(meant_name("near", names), "");
+  EXPECT_EQ(meant_name("pont", names, kSynonyms), "point");
+  EXPECT_EQ(meant_name("book", {}, kSynonyms), "");
+}
+
+TEST(NearestInWords, IsTheNearestOrAllOfFewOrNothing) {
+  const std::array<std::string, 3> names = {"cook", "book", "query"};
+  EXPECT_EQ(nearest_in_words("quary", names), " (nearest: \"query\")");
+  EXPECT_EQ(nearest_in_words("zebra", names), " (cook, book or query)");
+  EXPECT_EQ(nearest_in_words("zebra", {}), " (there are none)");
+  EXPECT_EQ(nearest_in_words("zebra", std::vector<std::string>(33, "query")), "");
 }
 
 TEST(Listed, SeparatesTheLastByOr) {
