@@ -80,11 +80,10 @@ Result<std::uint32_t> find_tree(const File& file, const WhichTree& wanted) {
   }
   const auto below = std::ranges::find_if(
       names, [&](const std::string& name) { return name.starts_with(which + "/"); });
-  std::string meant;
-  if (below != names.end()) {
-    meant = fmt::format(": that is a file or a scene of several, such as \"{}\"", *below);
-  }
-  if (meant.empty()) meant = path_suggestion(which, names);
+  std::string meant =
+      below == names.end()
+          ? path_suggestion(which, names)
+          : fmt::format(": that is a file or a scene of several, such as \"{}\"", *below);
   if (meant.empty()) meant = expected_if_few(names);
   return Error{Errc::kTreeIndex, fmt::format("no tree is called \"{}\"{}", which, meant)};
 }
