@@ -10,10 +10,9 @@
 namespace boxtree::cooker {
 namespace {
 
-// Takes out those that begin with `prefix`.
-std::vector<FileName> taken(std::vector<FileName>& names, FileNameView prefix) {
-  const auto first = std::stable_partition(
-      names.begin(), names.end(), [&](const FileName& name) { return !name.starts_with(prefix); });
+// Takes out those that belong to the target.
+std::vector<FileName> taken(std::vector<FileName>& names, const FolderSweep::Belongs& belongs) {
+  const auto first = std::stable_partition(names.begin(), names.end(), std::not_fn(belongs));
   std::vector<FileName> out(std::make_move_iterator(first), std::make_move_iterator(names.end()));
   names.erase(first, names.end());
   return out;
@@ -29,16 +28,16 @@ void FolderNames::add(FileNameView name) {
   }
 }
 
-std::vector<FileName> FolderSweep::take(const std::filesystem::path& folder, FileNameView prefix,
+std::vector<FileName> FolderSweep::take(const std::filesystem::path& folder, const Belongs& belongs,
                                         const Read& read) {
   const std::lock_guard lock(mutex_);
   const auto known = folders_.find(folder.native());
   if (known != folders_.end() && known->second.files * kNamesPerFile < known->second.names.count) {
     ++known->second.files;
-    return taken(known->second.names.unfinished, prefix);
+    return taken(known->second.names.unfinished, belongs);
   }
   FolderNames names = read();
-  std::vector<FileName> out = taken(names.unfinished, prefix);
+  std::vector<FileName> out = taken(names.unfinished, belongs);
   if (names.count > kNamesPerFile) {
     folders_[folder.native()] = {std::move(names), 1};
   } else if (known != folders_.end()) {

@@ -34,13 +34,15 @@ class FolderSweep {
   static constexpr std::size_t kNamesPerFile = 64;
 
   using Read = std::function<FolderNames()>;
+  using Belongs = std::function<bool(const FileName& unfinished)>;
 
-  /// For a new file in `folder`: names of unfinished files that begin with `prefix`. They are given
-  /// once, as of the last time when the folder was read; `read` reads it where it is small, and a
-  /// large one again once a file was made for every kNamesPerFile names that it had then. So n
-  /// files take O(n) names; what is left in between is found by a later reading or another process.
-  [[nodiscard]] std::vector<FileName> take(const std::filesystem::path& folder, FileNameView prefix,
-                                           const Read& read);
+  /// For a new file in `folder`: names of unfinished files that belong to its target. They are
+  /// given once, as of the last time when the folder was read; `read` reads it where it is small,
+  /// and a large one again once a file was made for every kNamesPerFile names that it had then. So
+  /// n files take O(n) names; what is left in between is found by a later reading or another
+  /// process.
+  [[nodiscard]] std::vector<FileName> take(const std::filesystem::path& folder,
+                                           const Belongs& belongs, const Read& read);
 
  private:
   struct Known {

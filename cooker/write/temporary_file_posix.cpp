@@ -63,9 +63,9 @@ FolderNames read_folder(const fs::path& folder) {
 // Files that cannot be removed stay. Locks work across containers.
 void sweep(const fs::path& folder, std::string_view name) {
   const std::string prefix = temporary_prefix(name);
+  const auto is_left = [&](const FileName& found) { return is_temporary_name(found, prefix); };
   for (const FileName& left :
-       folder_sweep().take(folder, prefix, [&] { return read_folder(folder); })) {
-    if (!is_temporary_name(left, prefix)) continue;
+       folder_sweep().take(folder, is_left, [&] { return read_folder(folder); })) {
     const fs::path path = folder / left;
     const int file = open_to_lock(path.c_str());
     if (file < 0) continue;

@@ -49,9 +49,12 @@ FolderNames read_folder(const fs::path& folder) {
 // surrogate pairs.
 void sweep(const fs::path& folder, const std::string& name) {
   const std::string prefix = temporary_prefix(name);
-  for (const FileName& left : folder_sweep().take(folder, named_path(prefix).native(),
-                                                  [&] { return read_folder(folder); })) {
-    if (!is_temporary_name(fs::path(left).string(), prefix)) continue;
+  const std::wstring wide_prefix = named_path(prefix).native();
+  const auto is_left = [&](const FileName& found) {
+    return found.starts_with(wide_prefix) && is_temporary_name(fs::path(found).string(), prefix);
+  };
+  for (const FileName& left :
+       folder_sweep().take(folder, is_left, [&] { return read_folder(folder); })) {
     static_cast<void>(::DeleteFileW(wide_path((folder / left).string()).c_str()));
   }
 }

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cooker/write/temporary_name.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -14,7 +16,12 @@ FileName name_of(const std::string& text) {
   return std::filesystem::path(text).native();
 }
 
-const FileName kPrefix = name_of(".out.");
+FolderSweep::Belongs is_of(const std::string& target) {
+  return [prefix = temporary_prefix(target)](const FileName& name) {
+    return is_temporary_name(std::filesystem::path(name).string(), prefix);
+  };
+}
+
 const FileName kLeft = name_of(".out.0123456789abcdef.cooking");
 const FileName kOther = name_of(".other.0123456789abcdef.cooking");
 
@@ -31,8 +38,8 @@ struct Folder {
     names_read += names.count;
     return names;
   }
-  std::vector<FileName> take(FolderSweep& sweep, const FileName& prefix = kPrefix) {
-    return sweep.take("folder", prefix, [this] { return read(); });
+  std::vector<FileName> take(FolderSweep& sweep, const std::string& target = "out") {
+    return sweep.take("folder", is_of(target), [this] { return read(); });
   }
 };
 
@@ -50,13 +57,22 @@ TEST(FolderSweep, ALargeFolderRemembersWhatItWasLeftWith) {
   Folder folder{1000, {kOther, kLeft}};
   EXPECT_EQ(folder.take(sweep), std::vector{kLeft});
   EXPECT_TRUE(folder.take(sweep).empty()) << "given once";
-  EXPECT_EQ(folder.take(sweep, name_of(".other.")), std::vector{kOther});
+  EXPECT_EQ(folder.take(sweep, "other"), std::vector{kOther});
   EXPECT_EQ(folder.names_read, 1002u);
   // What is left later is found once a file was made for each 64 names.
   folder.unfinished = {kLeft};
   std::size_t files = 3;
   while (folder.take(sweep).empty() && files < 1000) ++files;
   EXPECT_EQ(files, (1002 + FolderSweep::kNamesPerFile - 1) / FolderSweep::kNamesPerFile);
+}
+
+TEST(FolderSweep, ATargetTakesNothingOfOneWhoseNameGoesOn) {
+  FolderSweep sweep;
+  const FileName longer = name_of(".out.bxt.0123456789abcdef.cooking");
+  Folder folder{1000, {longer}};
+  EXPECT_TRUE(folder.take(sweep).empty());
+  EXPECT_EQ(folder.take(sweep, "out.bxt"), std::vector{longer});
+  EXPECT_EQ(folder.names_read, 1001u);
 }
 
 // Found by a newcomer: 20 000 outputs in one folder took 200 million names, most of the system's
@@ -72,7 +88,7 @@ TEST(FolderSweep, FoldersAreKnownApart) {
   FolderSweep sweep;
   Folder large{1000, {kLeft}}, other{2000, {kLeft}};
   EXPECT_EQ(large.take(sweep), std::vector{kLeft});
-  EXPECT_EQ(sweep.take("other", kPrefix, [&] { return other.read(); }), std::vector{kLeft});
+  EXPECT_EQ(sweep.take("other", is_of("out"), [&] { return other.read(); }), std::vector{kLeft});
   EXPECT_EQ(other.names_read, 2001u);
 }
 
