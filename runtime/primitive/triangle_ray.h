@@ -135,7 +135,7 @@ inline constexpr double kClearArea = 0x1p-8;
   const double weight1 = edges.opposite1 / area;
   const double weight2 = edges.opposite2 / area;
   const double depth = (weight0 * a.z + weight1 * b.z) + weight2 * c.z;
-  return RayTriangleHit{depth * ray.shear_z, weight1, weight2};
+  return RayTriangleHit{depth * ray.shear_z, weight1 + 0.0, weight2 + 0.0};  // not -0
 }
 
 /// Whether the ray meets the triangle, which it intersects, from the side from which the corners

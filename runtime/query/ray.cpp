@@ -67,8 +67,8 @@ RayHit described(const BoundTree& tree, const RayCandidate& hit) noexcept {
   return {hit.t,
           hit.face,
           hit.half,
-          hit.u + 0.0,  // not -0
-          hit.v + 0.0,
+          hit.u,
+          hit.v,
           tree.frame().to_object(hit.point()),
           unit_normal(hit.triangle)};
 }

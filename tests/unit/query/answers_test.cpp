@@ -227,23 +227,30 @@ TEST_P(Answers, ARayThatBeginsOnAFaceHitsItAtZeroNotAtMinusZero) {
   mesh.positions.f32 = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
   const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  cooker::SceneParts parts;
+  parts.instances.emplace_back();
+  const test::CookedScene placed = test::cook_scene({mesh}, parts, {GetParam().codec});
+  const Scene scene = test::require(Scene::bind(placed.file));
   std::size_t hits = 0;
+  const auto check = [&](const auto& hit) {
+    if (!hit) return;
+    ++hits;
+    EXPECT_EQ(hit->t, 0);
+    EXPECT_FALSE(std::signbit(hit->t));
+    EXPECT_FALSE(std::signbit(hit->u) || std::signbit(hit->v));
+  };
   for (const double z : {0.0, -0.0}) {
     for (const double direction : {-1.0, 1.0}) {
       for (const Eigen::Vector3d& origin : {Eigen::Vector3d(0.25, 0.125, z),
                                             Eigen::Vector3d(0.5, 0, z), Eigen::Vector3d(0, 0, z)}) {
         const Ray ray{origin, {0.1, 0.2, direction}};
-        for (const RayResult& hit : {closest_hit(cooked.tree, ray), any_hit(cooked.tree, ray)}) {
-          if (!hit) continue;
-          ++hits;
-          EXPECT_EQ(hit->t, 0);
-          EXPECT_FALSE(std::signbit(hit->t));
-          EXPECT_FALSE(std::signbit(hit->u) || std::signbit(hit->v));
-        }
+        check(closest_hit(cooked.tree, ray));
+        check(any_hit(cooked.tree, ray));
+        check(closest_hit(scene, ray));
       }
     }
   }
-  EXPECT_GT(hits, 12u);
+  EXPECT_GT(hits, 18u);
 }
 
 TEST(Visitors, CanBeFreeFunctions) {
