@@ -54,10 +54,13 @@ struct RayShear {
   template <class Vector>
   void set_axes(const Vector& direction) noexcept {
     const double x = std::abs(direction[0]), y = std::abs(direction[1]), z = std::abs(direction[2]);
-    axis_z = static_cast<int>(y > x);
-    axis_z = z > std::max(x, y) ? 2 : axis_z;
-    axis_x = axis_z == 2 ? 0 : axis_z + 1;
-    axis_y = axis_z == 0 ? 2 : axis_z - 1;
+    // By arithmetic, since compilers make branches of choices.
+    const int y_larger = y > x;
+    const int z_largest = (z > x) & (z > y);
+    axis_z = y_larger + (2 - y_larger) * z_largest;
+    static constexpr int kNext[] = {1, 2, 0, 1};
+    axis_x = kNext[axis_z];
+    axis_y = kNext[axis_z + 1];
     const double d = direction[axis_z];
     shear_x = direction[axis_x] / d;
     shear_y = direction[axis_y] / d;
