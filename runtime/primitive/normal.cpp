@@ -20,11 +20,44 @@ double power_to_one(double x) noexcept {
   return std::bit_cast<double>((kTwiceBias - (std::bit_cast<std::uint64_t>(x) >> 52)) << 52);
 }
 
-Eigen::Vector3d normalised(const Eigen::Vector3d& x) noexcept {
-  const double largest = x.cwiseAbs().maxCoeff();
+// Numbers that stay in registers: vectors that are written and read at once, by halves that do not
+// match, wait for memory.
+struct Components {
+  double x, y, z;
+
+  explicit Components(const Eigen::Vector3d& v) noexcept : x(v[0]), y(v[1]), z(v[2]) {}
+  Components(double of_x, double of_y, double of_z) noexcept : x(of_x), y(of_y), z(of_z) {}
+
+  [[nodiscard]] double largest() const noexcept {
+    return std::max(std::max(std::abs(x), std::abs(y)), std::abs(z));
+  }
+  [[nodiscard]] Components times(double scale) const noexcept {
+    return {scale * x, scale * y, scale * z};
+  }
+  [[nodiscard]] Components minus(const Components& other) const noexcept {
+    return {x - other.x, y - other.y, z - other.z};
+  }
+};
+
+Eigen::Vector3d normalised(const Components& v) noexcept {
+  const double largest = v.largest();
   if (!(largest > 0)) return Eigen::Vector3d::Zero();
-  const Eigen::Vector3d scaled = power_to_one(largest) * x;
-  return scaled / std::sqrt(squared_length(scaled));
+  const Components scaled = v.times(power_to_one(largest));
+  const double length =
+      std::sqrt((scaled.x * scaled.x + scaled.y * scaled.y) + scaled.z * scaled.z);
+  return {scaled.x / length, scaled.y / length, scaled.z / length};
+}
+
+// Twice the area of a triangle in the plane of two axes, its corners at (x, y), (x1, y1), (x2, y2);
+// see unit_normal().
+double careful_area(double x, double y, double x1, double y1, double x2, double y2) noexcept {
+  const Rounded a = two_sum(x1, -x), b = two_sum(y2, -y);
+  const Rounded c = two_sum(y1, -y), d = two_sum(x2, -x);
+  const Rounded ab = two_product(a.value, b.value), cd = two_product(c.value, d.value);
+  const Rounded difference = two_sum(ab.value, -cd.value);
+  const double rest =
+      (a.value * b.error + a.error * b.value) - (c.value * d.error + c.error * d.value);
+  return difference.value + (difference.error + ((ab.error - cd.error) + rest));
 }
 
 }  // namespace
@@ -35,28 +68,23 @@ Eigen::Vector3d normalised(const Eigen::Vector3d& x) noexcept {
 // products are exact, and each rounding of the rest is below u^2, 2^-102 of that product in all.
 // Coordinates are scaled so that no significant part underflows.
 Eigen::Vector3d unit_normal(const Triangle& triangle) noexcept {
-  double largest = std::numeric_limits<double>::min();
-  for (const Eigen::Vector3d& corner : triangle.corner) {
-    largest = std::max(largest, corner.cwiseAbs().maxCoeff());
-  }
+  const Components corner[3] = {Components(triangle.corner[0]), Components(triangle.corner[1]),
+                                Components(triangle.corner[2])};
+  const double largest =
+      std::max(std::max(corner[0].largest(), corner[1].largest()),
+               std::max(corner[2].largest(), std::numeric_limits<double>::min()));
   const double scale = power_to_one(largest);
-  const Eigen::Vector3d at = scale * triangle.corner[0];
-  const Eigen::Vector3d to_first = scale * triangle.corner[1],
-                        to_second = scale * triangle.corner[2];
-  const Eigen::Vector3d first = to_first - at, second = to_second - at;
-  Eigen::Vector3d normal = cross(first, second);
-  const double product = first.cwiseAbs().maxCoeff() * second.cwiseAbs().maxCoeff();
-  if (normal.cwiseAbs().maxCoeff() < product * kNearlyCollinear) [[unlikely]] {
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const Eigen::Index i = (k + 1) % 3, j = (k + 2) % 3;
-      const Rounded a = two_sum(to_first[i], -at[i]), b = two_sum(to_second[j], -at[j]);
-      const Rounded c = two_sum(to_first[j], -at[j]), d = two_sum(to_second[i], -at[i]);
-      const Rounded ab = two_product(a.value, b.value), cd = two_product(c.value, d.value);
-      const Rounded difference = two_sum(ab.value, -cd.value);
-      const double rest =
-          (a.value * b.error + a.error * b.value) - (c.value * d.error + c.error * d.value);
-      normal[k] = difference.value + (difference.error + ((ab.error - cd.error) + rest));
-    }
+  const Components at = corner[0].times(scale);
+  const Components to_first = corner[1].times(scale), to_second = corner[2].times(scale);
+  const Components first = to_first.minus(at), second = to_second.minus(at);
+  const Components normal = {first.y * second.z - first.z * second.y,
+                             first.z * second.x - first.x * second.z,
+                             first.x * second.y - first.y * second.x};
+  const double product = first.largest() * second.largest();
+  if (normal.largest() < product * kNearlyCollinear) [[unlikely]] {
+    return normalised({careful_area(at.y, at.z, to_first.y, to_first.z, to_second.y, to_second.z),
+                       careful_area(at.z, at.x, to_first.z, to_first.x, to_second.z, to_second.x),
+                       careful_area(at.x, at.y, to_first.x, to_first.y, to_second.x, to_second.y)});
   }
   return normalised(normal);
 }
@@ -106,7 +134,7 @@ Eigen::Vector3d placed_normal(const Eigen::Matrix3d& linear,
                               const Eigen::Vector3d& normal) noexcept {
   if (keeps_directions(linear)) return normal;
   const Cofactors cofactors(linear);
-  const Eigen::Vector3d placed = normalised(product(cofactors.matrix, normal));
+  const Eigen::Vector3d placed = normalised(Components(product(cofactors.matrix, normal)));
   return cofactors.determinant < 0 ? Eigen::Vector3d(-placed) : placed;
 }
 
