@@ -170,9 +170,10 @@ struct LeafTriangles {
     out[2] = kFourths + in_leaf;
   }
 
-  /// The corners of lane `lane`, [corner][axis]: steps of the grid, or the floats of the source.
+  /// The corners of lane `lane`, [corner][axis], the fourth unspecified: steps of the grid, or the
+  /// floats of the source. Rows of four, so that none is written and read by halves that differ.
   BOXTREE_ALWAYS_INLINE void read_corners(std::uint32_t lane, ClusterNumbers numbers,
-                                          double (&out)[3][3]) const {
+                                          double (&out)[3][4]) const {
     std::uint32_t references[3];
     find_corners(lane, references);
     const bool is_grid = numbers == ClusterNumbers::kGrid;

@@ -239,14 +239,23 @@ class LeafFloats {
     const auto origin = hn::LoadU(
         d, reader_.is_from_origin() ? kNoOrigin : reader_.frame().origin_lanes.lane.data());
     const auto scale = hn::Set(d, reader_.stored_scale());
-    const auto xyz = hn::FirstN(d, 3);
-    auto is_within = xyz;
+    const hn::Half<decltype(d)> half;
+    static_assert(sizeof triangle.corner == 9 * sizeof(double));
+    auto* const corners = reinterpret_cast<double*>(&triangle.corner);
+    auto is_within = hn::FirstN(d, 3);
     const auto* const positions = reinterpret_cast<const float*>(mesh_.positions);
     for (std::size_t c = 0; c < 3; ++c) {
       const auto stored =
           hn::PromoteTo(d, hn::LoadU(floats, positions + start_[std::size_t{3} * lane + c]));
       const auto position = hn::Mul(hn::Sub(stored, origin), scale);
-      hn::BlendedStore(position, xyz, d, triangle.corner[c].data());
+      // Two whole vectors, each fourth number of which the next corner overwrites: stores by masks
+      // are slow, the more so if what they wrote is read at once.
+      if (c < 2) {
+        hn::StoreU(position, d, corners + 3 * c);
+      } else {
+        hn::StoreU(hn::LowerHalf(half, position), half, corners + 6);
+        corners[8] = hn::GetLane(hn::UpperHalf(half, position));
+      }
       is_within = hn::And(is_within, hn::Le(hn::Abs(position), hn::Set(d, kMaxCoordinate)));
     }
     if (hn::CountTrue(d, is_within) == 3) return true;
@@ -275,7 +284,7 @@ class LeafFloats {
     const double scale = reader_.stored_scale();
     const Eigen::Vector3d origin =
         reader_.is_from_origin() ? Eigen::Vector3d::Zero() : reader_.frame().origin;
-    double corner[3][3];
+    double corner[3][4];
     read_corners(lane, corner);
     bool is_finite = true;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -327,7 +336,7 @@ class LeafFloats {
   }
 
   // [corner][axis], as they are stored.
-  HWY_INLINE void read_corners(std::uint32_t lane, double (&out)[3][3]) const {
+  HWY_INLINE void read_corners(std::uint32_t lane, double (&out)[3][4]) const {
 #if BOXTREE_READS_CLUSTERS
     if (reader_.has_clusters())
       return leaf_->triangles.read_corners(lane, reader_.clusters().numbers, out);

@@ -91,7 +91,7 @@ void compare_plain_leaf(const LeafReader& leaves, std::uint32_t first, Errc erro
     EXPECT_EQ(first + triangles.face_and_half(lane) / 2, expected.face[lane]);
     std::uint32_t references[3];
     triangles.find_corners(lane, references);
-    double stored[3][3];
+    double stored[3][4];
     triangles.read_corners(lane, leaves.clusters().numbers, stored);
     FloatCorners in_floats, exact;
     for (std::size_t c = 0; c < 3; ++c) {
