@@ -11,6 +11,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <hwy/highway.h>
 #include <type_traits>
 
@@ -46,44 +47,66 @@ class NodeView {
   NodeView(const WideCodec<Node>& codec, std::uint32_t number)
       : bytes_(codec.nodes + std::size_t{number} * sizeof(Node)) {}
 
-  [[nodiscard]] HWY_INLINE WideLinks links() const {
-    if constexpr (kIsWide8) {
-      return {load<std::uint32_t>(bytes_ + offsetof(Node, first_node)),
-              load<std::uint32_t>(bytes_ + offsetof(Node, first_leaf)),
-              load<std::uint8_t>(bytes_ + offsetof(Node, inner_mask)),
-              load<std::uint8_t>(bytes_ + offsetof(Node, child_count))};
-    } else {
-      return links_of_word(load<std::uint64_t>(bytes_ + offsetof(Node, links)));
-    }
+  /// The links of a node, to be kept while a walk is below it.
+  struct LinkBytes {
+    std::byte bytes[sizeof(Node) - 2 * sizeof(Node::low)];
+  };
+  [[nodiscard]] HWY_INLINE LinkBytes link_bytes() const {
+    LinkBytes links;
+    std::memcpy(links.bytes, bytes_ + kLinks, sizeof links);
+    return links;
   }
+  [[nodiscard]] HWY_INLINE static WideLinks links(const LinkBytes& links) {
+    return links_at(links.bytes);
+  }
+  [[nodiscard]] HWY_INLINE WideLinks links() const { return links_at(bytes_ + kLinks); }
 
-  /// The low (side 0) or high (side 1) planes of an axis, in steps: of children `part` * kLanes and
-  /// on.
-  [[nodiscard]] HWY_INLINE FloatVector steps(std::size_t side, std::size_t axis,
-                                             std::size_t part) const {
-    constexpr std::size_t kBytesOfSide = sizeof(Node::low);
-    static_assert(offsetof(Node, low) == 0 && offsetof(Node, high) == kBytesOfSide);
-    const std::byte* const codes = bytes_ + side * kBytesOfSide + axis * (kBytesOfSide / 3);
+  /// Where the codes of low (side 0) or high (side 1) planes of an axis are, for steps().
+  [[nodiscard]] static constexpr std::size_t codes(std::size_t side, std::size_t axis) {
+    static_assert(offsetof(Node, low) == 0 && offsetof(Node, high) == sizeof(Node::low));
+    return side * sizeof(Node::low) + axis * (sizeof(Node::low) / 3);
+  }
+  /// Planes in steps: of children `part` * kLanes and on.
+  [[nodiscard]] HWY_INLINE FloatVector steps(std::size_t codes, std::size_t part) const {
     const hn::Rebind<std::int32_t, Floats> integers;
     if constexpr (kIsWide8) {
       const hn::Rebind<std::uint8_t, Floats> small;
-      const auto* const first = reinterpret_cast<const std::uint8_t*>(codes) + part * kLanes;
+      const auto* const first =
+          reinterpret_cast<const std::uint8_t*>(bytes_ + codes) + part * kLanes;
       return hn::ConvertTo(Floats(), hn::PromoteTo(integers, hn::LoadU(small, first)));
     } else {
       const hn::Rebind<std::uint32_t, Floats> words;
       const auto shift =
           hn::ShiftLeft<2>(hn::Iota(words, static_cast<std::uint32_t>(part * kLanes)));
-      const auto all = hn::Set(words, load<std::uint32_t>(codes));
+      const auto all = hn::Set(words, load<std::uint32_t>(bytes_ + codes));
       const auto code = hn::And(hn::Shr(all, shift), hn::Set(words, 15u));
       const FloatVector number = hn::ConvertTo(Floats(), hn::BitCast(integers, code));
       const auto first_steps = hn::Set(Floats(), static_cast<float>(Node::kFirstSteps));
       return hn::Mul(number, hn::Add(number, first_steps));
     }
   }
+  [[nodiscard]] HWY_INLINE FloatVector steps(std::size_t side, std::size_t axis,
+                                             std::size_t part) const {
+    return steps(codes(side, axis), part);
+  }
 
  private:
   static constexpr bool kIsWide8 = std::is_same_v<Node, Wide8Node>;
   static_assert(kIsWide8 || std::is_same_v<Node, Wide4Node>);
+
+  static constexpr std::size_t kLinks = 2 * sizeof(Node::low);
+
+  [[nodiscard]] HWY_INLINE static WideLinks links_at(const std::byte* links) {
+    if constexpr (kIsWide8) {
+      return {load<std::uint32_t>(links + (offsetof(Node, first_node) - kLinks)),
+              load<std::uint32_t>(links + (offsetof(Node, first_leaf) - kLinks)),
+              load<std::uint8_t>(links + (offsetof(Node, inner_mask) - kLinks)),
+              load<std::uint8_t>(links + (offsetof(Node, child_count) - kLinks))};
+    } else {
+      static_assert(offsetof(Node, links) == kLinks);
+      return links_of_word(load<std::uint64_t>(links));
+    }
+  }
 
   const std::byte* bytes_;
 };
