@@ -2,12 +2,14 @@
 // One number per axis, laid out so that arithmetic on them is vectorised.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
 #include <Eigen/Core>
 
 #include "format/box.h"
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree {
 
@@ -32,6 +34,13 @@ struct alignas(16) AxisLanes {
 
   std::array<double, kCount> lane;
 };
+
+/// Brings numbers, none of them NaN, into [-most, most]. Hardly ever is one outside, so that to look
+/// is cheaper: compilers do not see the minimum of vectors in that of their numbers.
+inline void clamp_magnitudes(AxisLanes& v, double most) noexcept {
+  if (largest_magnitude(v[0], v[1], v[2]) <= most) [[likely]] return;
+  for (std::size_t k = 0; k < AxisLanes::kCount; ++k) v[k] = std::clamp(v[k], -most, most);
+}
 
 /// A box, laid out alike.
 struct BoxLanes {

@@ -31,11 +31,11 @@ struct RayBoxFilter {
                double query_start, double bound) noexcept
       : start(query_start), error(float_above(bound)) {
     // One loop per operation, so that each is vectorised.
-    AxisLanes from, within;
+    AxisLanes from, within = slab.inverse();
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
       from[k] = query_origin[k] + start * direction[k];
-      within[k] = std::max(std::min(slab.inverse()[k], kLargestInverse), -kLargestInverse);
     }
+    clamp_magnitudes(within, kLargestInverse);
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) origin[k] = static_cast<float>(from[k]);
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) inverse[k] = static_cast<float>(within[k]);
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {

@@ -49,10 +49,11 @@ class RaySlab {
           double max_abs) noexcept {
     const double margin = 8 * kRoundoffF64 * (origin_max_abs + power_above(max_abs));
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
-      inverse_[k] = std::max(-kHuge, std::min(kHuge, 1 / direction[k]));
+      inverse_[k] = 1 / direction[k];
       low_origin_[k] = origin[k] + margin;
       high_origin_[k] = origin[k] - margin;
     }
+    clamp_magnitudes(inverse_, kHuge);
   }
   RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_abs) noexcept
       : RaySlab(AxisLanes(origin), largest_magnitude(origin), AxisLanes(direction), max_abs) {}
