@@ -3,6 +3,7 @@
 #include "runtime/scene/moving_tree.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace boxtree {
@@ -45,6 +46,7 @@ void sort_in_space(std::span<std::uint32_t> numbers, std::uint32_t size,
 MovingTree::MovingTree(std::span<const Box<double>> boxes, const Memory* memory)
     : leaves_(std::bit_ceil(std::max(static_cast<std::uint32_t>(boxes.size()), 1u))),
       nodes_(2 * std::size_t{leaves_}, empty_box<double>(), memory),
+      eight_(memory),
       place_(boxes.size(), memory),
       at_place_(leaves_, memory) {
   const auto count = static_cast<std::uint32_t>(boxes.size());
@@ -57,14 +59,53 @@ MovingTree::MovingTree(std::span<const Box<double>> boxes, const Memory* memory)
     nodes_[leaves_ + place] = boxes[numbers[place]];
   }
   for (std::uint32_t node = leaves_ - 1; node > 0; --node) join(node);
+  number_eights();
+  Eight none;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::ranges::fill(none.low[axis], std::numeric_limits<float>::infinity());
+    std::ranges::fill(none.high[axis], -std::numeric_limits<float>::infinity());
+  }
+  const std::size_t count_of_eights =
+      eights_.depth == 0 ? 0 : eights_.number(2 * leaves_ - 1, eights_.depth - 1) + std::size_t{1};
+  eight_ = Array<Eight>(count_of_eights, none, memory);
+  for (std::uint32_t node = 2 * leaves_ - 1; node > 1; --node) round(node);
+}
+
+// Levels are those of the binary tree, of which leaves are the last: level l has nodes 2^l to
+// 2^(l + 1) - 1.
+void MovingTree::number_eights() noexcept {
+  const auto levels = static_cast<std::uint32_t>(std::countr_zero(leaves_));
+  eights_ = {};
+  std::uint32_t count = 0;  // of those of lower depths
+  for (std::uint32_t level = levels == 0 ? 1 : (levels - 1) % 3 + 1; level <= levels; level += 3) {
+    const std::uint32_t first_node = std::uint32_t{1} << level;
+    if (eights_.depth == 0) eights_.top = first_node & ~7u;
+    eights_.first[eights_.depth++] = count - first_node / 8;
+    count += std::max(first_node / 8, 1u);
+  }
+}
+
+// To floats, if the node is on a level that has them.
+void MovingTree::round(std::uint32_t node) noexcept {
+  const std::uint32_t below = static_cast<std::uint32_t>(std::countr_zero(leaves_)) -
+                              static_cast<std::uint32_t>(std::bit_width(node) - 1);
+  if (node == 1 || below % 3 != 0) return;
+  Eight& eight = eight_[eights_.number(node, eights_.depth - 1 - below / 3)];
+  const Box<double>& box = nodes_[node];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    eight.low[axis][node % 8] = float_below(box.low[axis]);
+    eight.high[axis][node % 8] = float_above(box.high[axis]);
+  }
 }
 
 void MovingTree::refit(std::uint32_t moving, const Box<double>& box) noexcept {
   std::uint32_t node = leaves_ + place_[moving];
   nodes_[node] = box;
+  round(node);
   while (node > 1) {
     node /= 2;
     join(node);
+    round(node);
   }
 }
 

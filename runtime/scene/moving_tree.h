@@ -3,14 +3,18 @@
 // one of them is given another pose.
 #pragma once
 
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
 
 #include "format/children.h"
 #include "format/memory.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/tree/bound_codec.h"
+#include "runtime/tree/float_range.h"
 
 namespace boxtree {
 
@@ -38,8 +42,29 @@ class MovingTree {
     }
   };
 
+  /// For walks by vectors: the boxes of eight nodes, 8n to 8n + 7, rounded outwards to floats. Low
+  /// planes of a box that is empty or no node's lie above its high ones.
+  struct Eight {
+    float low[3][8];
+    float high[3][8];
+  };
+  /// Those of every third level, from the leaves up; the first have the root above them, one to
+  /// three levels higher. Node n of depth d is in lane n % 8 of number (n / 8) + first[d].
+  struct Eights {
+    static constexpr std::size_t kDepthLimit = 11;  // of 32 levels
+
+    const Eight* of = nullptr;
+    std::uint32_t depth = 0;                         // of leaves, plus one
+    std::array<std::uint32_t, kDepthLimit> first{};  // modulo 2^32
+    std::uint32_t top = 0;                           // the node in lane 0 of depth 0
+
+    [[nodiscard]] std::uint32_t number(std::uint32_t node, std::size_t node_depth) const noexcept {
+      return node / 8 + first[node_depth];
+    }
+  };
+
   explicit MovingTree(const Memory* memory = nullptr) noexcept
-      : nodes_(memory), place_(memory), at_place_(memory) {}
+      : nodes_(memory), eight_(memory), place_(memory), at_place_(memory) {}
 
   /// Assigns places to instances with these boxes and builds the tree over them. Allocates.
   MovingTree(std::span<const Box<double>> boxes, const Memory* memory);
@@ -47,6 +72,8 @@ class MovingTree {
   void swap(MovingTree& other) noexcept {
     std::swap(leaves_, other.leaves_);
     nodes_.swap(other.nodes_);
+    eight_.swap(other.eight_);
+    std::swap(eights_, other.eights_);
     place_.swap(other.place_);
     at_place_.swap(other.at_place_);
   }
@@ -59,19 +86,32 @@ class MovingTree {
   [[nodiscard]] NodeRef root_ref() const noexcept { return {1, 0}; }
   [[nodiscard]] Decoder decoder() const noexcept { return {nodes_.data(), leaves_}; }
   [[nodiscard]] const Box<double>& root_box() const noexcept { return nodes_[1]; }
+  /// Whether it has eights() that filters in single precision may be used for.
+  [[nodiscard]] bool has_float_nodes() const noexcept {
+    return !empty() && !is_leaf() && is_in_float_range(root_box());
+  }
+  [[nodiscard]] Eights eights() const noexcept {
+    Eights eights = eights_;
+    eights.of = eight_.data();
+    return eights;
+  }
   [[nodiscard]] const Box<double>& box(std::uint32_t moving) const noexcept {
     return nodes_[leaves_ + place_[moving]];
   }
   /// The number of a leaf's moving instance.
-  [[nodiscard]] std::uint32_t moving(NodeRef leaf) const noexcept {
+  [[nodiscard]] std::uint32_t instance(NodeRef leaf) const noexcept {
     return at_place_[leaf.first - leaves_];
   }
 
  private:
   void join(std::uint32_t node) noexcept;
+  void number_eights() noexcept;
+  void round(std::uint32_t node) noexcept;
 
   std::uint32_t leaves_ = 0;
-  Array<Box<double>> nodes_;       // [2 leaves_]; node 0 is not used
+  Eights eights_;
+  Array<Box<double>> nodes_;  // [2 leaves_]; node 0 is not used
+  Array<Eight> eight_;
   Array<std::uint32_t> place_;     // of each moving instance
   Array<std::uint32_t> at_place_;  // [leaves_]; unspecified where no instance is
 };
@@ -79,6 +119,11 @@ class MovingTree {
 template <class S>
 [[nodiscard]] Box<S> root_box(const MovingTree& tree) noexcept {
   return tree.root_box();
+}
+
+/// Largest magnitude of any box coordinate, rounded outwards as in Eight.
+[[nodiscard]] inline double max_abs_of(const MovingTree& tree) noexcept {
+  return float_above(max_abs_of(tree.root_box()).maxCoeff());
 }
 
 }  // namespace boxtree

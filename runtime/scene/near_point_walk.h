@@ -30,13 +30,9 @@ class NearPointWalk {
 
   // As the query of visit_nearest_instances().
   [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk; }
-  [[nodiscard]] double bound() const noexcept { return bound_; }
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return squared_distance(point_, box);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, point_, bound_);
+  template <class Tree>
+  [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor instances) const {
+    return walk_instances(tree, instances, point_, bound_);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     error = visitor_(*this, instance, placed);

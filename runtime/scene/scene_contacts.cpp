@@ -34,9 +34,9 @@ struct LaterMoving {
   Errc& error;
 
   [[nodiscard]] bool is_done() const noexcept { return in_scene.is_done(); }
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return in_scene.overlaps(box);
+  template <class Tree>
+  [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor instances) const {
+    return in_scene.walk(tree, instances);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
     return (instance <= in_scene.body.instance && !other.at_rest) ||
@@ -67,8 +67,7 @@ Result<Visit> visit_moving_pairs(const BoundScene& scene, BodyPairVisitor visito
     Errc walked = walk_static(scene, in_scene);
     if (walked == Errc::kOk && !in_scene.is_done()) {
       LaterMoving later{in_scene, in_scene.admission, in_scene.error};
-      MovingInstances<LaterMoving> others(later, scene.moving_tree());
-      walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().decoder(), others);
+      walked = walk_moving(scene, later);
     }
     Result<Visit> visit = outcome_of(walked, in_scene);
     if (!visit || *visit == Visit::kStopped) return visit;

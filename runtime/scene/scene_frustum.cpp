@@ -91,10 +91,11 @@ struct FrustumInScene : InstanceOutcome {
   FrustumSides sides;  // in the scene's frame
   const Answer& answer;
 
-  // Of the top level, whose leaves are instances.
+  // Of a tree whose leaves are instances.
+  template <class Tree>
   struct Instances {
     const FrustumInScene& query;
-    const TopLevel& top;
+    const Tree& tree;
     InstanceVisitor visit;
     WalkBound nodes;
 
@@ -102,16 +103,17 @@ struct FrustumInScene : InstanceOutcome {
     [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
       return query.overlaps(box);
     }
-    [[nodiscard]] bool leaf(NodeRef ref) const { return visit(top.instance(ref)); }
+    [[nodiscard]] bool leaf(NodeRef ref) const { return visit(tree.instance(ref)); }
   };
 
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return sides.overlaps(box);
   }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor visit) const {
-    Instances instances{*this, top, visit, WalkBound(top.node_count())};
-    return traverse_overlap(top, top.codec, instances);
+  template <class Tree>
+  [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor visit) const {
+    Instances<Tree> instances{*this, tree, visit, WalkBound(tree.node_count())};
+    return traverse_overlap(tree, tree.decoder(), instances);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     if (placed.tree->empty()) return true;

@@ -58,13 +58,9 @@ struct LineInScene : LineInUnits {
   LineInScene(const LineInUnits& in_units, const TopLevelRay& ray_in_frame) noexcept
       : LineInUnits(in_units), in_frame(ray_in_frame) {}
 
-  [[nodiscard]] double bound() const noexcept { return line.t_max; }
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return in_frame.slab.key(box, in_frame.s_min);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, in_frame, line.t_max);
+  template <class Tree>
+  [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor instances) const {
+    return walk_instances(tree, instances, in_frame, line.t_max);
   }
 
   TopLevelRay in_frame;

@@ -28,12 +28,9 @@ struct ShapeInScene : InstanceOutcome {
   const Shape& shape;
   SceneFaceVisitor visitor;
 
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return shape.overlaps(box);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return shape.walk(top, instances);
+  template <class Tree>
+  [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor instances) const {
+    return shape.walk(tree, instances);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     return note(shape.run_query(placed, {visitor, instance}, admission.work));
@@ -78,12 +75,9 @@ struct SphereInUnits {
   Eigen::Vector3d center_in_frame;
   double squared_radius_in_frame;
 
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return squared_distance(center_in_frame, box) <= squared_radius_in_frame;
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, center_in_frame, squared_radius_in_frame);
+  template <class Tree>
+  [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor instances) const {
+    return walk_instances(tree, instances, center_in_frame, squared_radius_in_frame);
   }
   [[nodiscard]] Result<Visit> run_query(const BoundScene::Placed& placed,
                                         const FacesOfInstance& faces, QueryWork& work) const {

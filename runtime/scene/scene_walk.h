@@ -60,16 +60,18 @@ struct BoxInFrame {
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return boxes_overlap(box, in_frame);
   }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, in_frame);
+  template <class Tree>
+  [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor instances) const {
+    return walk_instances(tree, instances, in_frame);
   }
 };
 
 // Members of the queries of a scene, below:
 // query.visit(instance, const BoundScene::Placed&) -> bool: whether to go on.
-// query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level with the query's shape.
+// query.walk(const TopLevel& or const MovingTree&, InstanceVisitor) -> Errc: walk_instances with
+// the
+//   query's shape.
 // query.admission; and query.error, which is set when an instance is corrupt.
-// The box tests of the templates of walk/traversal.h, in the scene's frame.
 
 /// Counts an instance and visits it; whether to go on.
 template <class Query>
@@ -78,33 +80,6 @@ template <class Query>
   if (!query.admission.work.take_one()) query.error = Errc::kWorkLimit;
   return query.error == Errc::kOk && query.visit(instance, placed);
 }
-
-/// The query of walk/traversal.h over moving instances.
-template <class Query>
-struct MovingInstances {
-  MovingInstances(Query& of, const MovingTree& tree) noexcept
-      : query(of), nodes(tree.node_count()) {}
-
-  Query& query;
-  WalkBound nodes;
-
-  [[nodiscard]] double bound() const noexcept { return query.bound(); }
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return query.key(box);
-  }
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return query.overlaps(box);
-  }
-
-  [[nodiscard]] bool leaf(NodeRef ref) {
-    const BoundScene& scene = query.admission.scene;
-    const BoundScene::Moving& moving = scene.moving()[scene.moving_tree().moving(ref)];
-    return !query.admission.admits(moving.instance, moving.placed.layer) ||
-           visit_instance(query, moving.instance, moving.placed);
-  }
-};
 
 /// Visits the static instances that the query may intersect, each at most once whatever the bytes.
 template <class Query>
@@ -122,20 +97,28 @@ Errc walk_static(const BoundScene& scene, Query& query) {
   });
 }
 
+/// Visits the moving instances that the query may intersect.
+template <class Query>
+Errc walk_moving(const BoundScene& scene, Query& query) {
+  return query.walk(scene.moving_tree(), [&](std::uint32_t number) {
+    const BoundScene::Moving& moving = scene.moving()[number];
+    return !query.admission.admits(moving.instance, moving.placed.layer) ||
+           visit_instance(query, moving.instance, moving.placed);
+  });
+}
+
 /// Visits the instances whose boxes overlap. The query may stop it, and keeps errors of instances.
 template <class Query>
 Errc visit_overlapping_instances(const BoundScene& scene, Query& query) {
   const Errc walked = walk_static(scene, query);
   if (walked != Errc::kOk || query.is_done()) return walked;
-  MovingInstances<Query> moving(query, scene.moving_tree());
-  return traverse_overlap(scene.moving_tree(), scene.moving_tree().decoder(), moving);
+  return walk_moving(scene, query);
 }
 
 /// The same from near to far. Moving instances come first: they are few, and near the query.
 template <class Query>
 Errc visit_nearest_instances(const BoundScene& scene, Query& query) {
-  MovingInstances<Query> moving(query, scene.moving_tree());
-  const Errc walked = traverse_nearest(scene.moving_tree(), scene.moving_tree().decoder(), moving);
+  const Errc walked = walk_moving(scene, query);
   if (walked != Errc::kOk || query.is_done()) return walked;
   return walk_static(scene, query);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Walks of the top level of a scene, one child at a time.
+// Walks of the two trees over the instances of a scene, one child at a time.
 #include "runtime/query/relative_pose.h"
 #include "runtime/scene/top_level_walk.h"
 #include "runtime/walk/traversal.h"
@@ -8,18 +8,20 @@ namespace boxtree {
 namespace {
 
 // Queries of walk/traversal.h whose leaves are instances.
+template <class Tree>
 struct Instances {
-  Instances(const TopLevel& level, InstanceVisitor visitor)
-      : top(level), visit(visitor), nodes(level.scene.node_count) {}
+  Instances(const Tree& walked, InstanceVisitor visitor)
+      : tree(walked), visit(visitor), nodes(walked.node_count()) {}
 
-  const TopLevel& top;
+  const Tree& tree;
   InstanceVisitor visit;
   WalkBound nodes;
 
-  [[nodiscard]] bool leaf(NodeRef ref) const { return visit(top.instance(ref)); }
+  [[nodiscard]] bool leaf(NodeRef ref) const { return visit(tree.instance(ref)); }
 };
 
-struct InstancesInBox : Instances {
+template <class Tree>
+struct InstancesInBox : Instances<Tree> {
   const Box<double>& region;
 
   template <class S>
@@ -28,7 +30,8 @@ struct InstancesInBox : Instances {
   }
 };
 
-struct InstancesNearPoint : Instances {
+template <class Tree>
+struct InstancesNearPoint : Instances<Tree> {
   const Eigen::Vector3d& point;
   const double& best;
 
@@ -39,7 +42,8 @@ struct InstancesNearPoint : Instances {
   }
 };
 
-struct InstancesOnRay : Instances {
+template <class Tree>
+struct InstancesOnRay : Instances<Tree> {
   const TopLevelRay& ray;
   const double& s_max;
 
@@ -52,21 +56,34 @@ struct InstancesOnRay : Instances {
 
 }  // namespace
 
-Errc walk_top_level_scalar(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  InstancesInBox query{{top, visit}, box};
-  return traverse_overlap(top, top.codec, query);
+template <class Tree>
+Errc walk_one_by_one(const Tree& tree, const Box<double>& box, InstanceVisitor visit) {
+  InstancesInBox<Tree> query{{tree, visit}, box};
+  return traverse_overlap(tree, tree.decoder(), query);
 }
 
-Errc walk_top_level_scalar(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
-                           InstanceVisitor visit) {
-  InstancesNearPoint query{{top, visit}, point, bound};
-  return traverse_nearest(top, top.codec, query);
+template <class Tree>
+Errc walk_one_by_one(const Tree& tree, const Eigen::Vector3d& point, const double& bound,
+                     InstanceVisitor visit) {
+  InstancesNearPoint<Tree> query{{tree, visit}, point, bound};
+  return traverse_nearest(tree, tree.decoder(), query);
 }
 
-Errc walk_top_level_scalar(const TopLevel& top, const TopLevelRay& ray, const double& bound,
-                           InstanceVisitor visit) {
-  InstancesOnRay query{{top, visit}, ray, bound};
-  return traverse_nearest(top, top.codec, query);
+template <class Tree>
+Errc walk_one_by_one(const Tree& tree, const TopLevelRay& ray, const double& bound,
+                     InstanceVisitor visit) {
+  InstancesOnRay<Tree> query{{tree, visit}, ray, bound};
+  return traverse_nearest(tree, tree.decoder(), query);
 }
+
+template Errc walk_one_by_one(const TopLevel&, const Box<double>&, InstanceVisitor);
+template Errc walk_one_by_one(const TopLevel&, const Eigen::Vector3d&, const double&,
+                              InstanceVisitor);
+template Errc walk_one_by_one(const TopLevel&, const TopLevelRay&, const double&, InstanceVisitor);
+template Errc walk_one_by_one(const MovingTree&, const Box<double>&, InstanceVisitor);
+template Errc walk_one_by_one(const MovingTree&, const Eigen::Vector3d&, const double&,
+                              InstanceVisitor);
+template Errc walk_one_by_one(const MovingTree&, const TopLevelRay&, const double&,
+                              InstanceVisitor);
 
 }  // namespace boxtree

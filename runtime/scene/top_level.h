@@ -25,6 +25,7 @@ struct TopLevel {
   [[nodiscard]] bool is_leaf() const noexcept { return scene.root == RootKind::kLeaf; }
   [[nodiscard]] std::uint32_t node_count() const noexcept { return scene.node_count; }
   [[nodiscard]] NodeRef root_ref() const noexcept { return {0, 0}; }
+  [[nodiscard]] const Codec& decoder() const noexcept { return codec; }
   /// The number of a leaf's instance.
   [[nodiscard]] std::uint32_t instance(NodeRef leaf) const noexcept {
     return leaf.first / kLeafFaces;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The top level of a scene by vectors: which instances a box, a point or a ray may intersect.
+// The two trees over the instances of a scene by vectors: which of them a box, a point or a ray may
+// intersect.
 #include <algorithm>
+#include <type_traits>
 
 #include "runtime/query/point_filter.h"
 #include "runtime/query/ray_filter.h"
@@ -18,22 +20,26 @@
 #include "runtime/query/distance-inl.h"
 #include "runtime/walk/box_bounds-inl.h"
 #include "runtime/walk/nearest-inl.h"
+#include "runtime/walk/traversal_stack-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  return walk_top_level_scalar(top, box, visit);
+template <class Tree>
+Errc walk_box(const Tree& tree, const Box<double>& box, InstanceVisitor visit) {
+  return walk_one_by_one(tree, box, visit);
 }
-Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+template <class Tree>
+Errc walk_point(const Tree& tree, const Eigen::Vector3d& point, const double& bound,
                 InstanceVisitor visit) {
-  return walk_top_level_scalar(top, point, bound, visit);
+  return walk_one_by_one(tree, point, bound, visit);
 }
-Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double /*enter*/, const double& bound,
-              InstanceVisitor visit) {
-  return walk_top_level_scalar(top, ray, bound, visit);
+template <class Tree>
+Errc walk_ray(const Tree& tree, const TopLevelRay& ray, const RayBoxFilter& /*filter*/,
+              const double& bound, InstanceVisitor visit) {
+  return walk_one_by_one(tree, ray, bound, visit);
 }
 #else
 // The shape of a query against boxes: NearestWalk documents what `intersect` returns.
@@ -120,25 +126,101 @@ Errc walk(const TopLevel& top, const Region& region, const double& bound, Instan
   return NearestWalk<Wide8Node, Instances<Region>>(top.codec, instances).run(root_box<float>(top));
 }
 
-Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+// The tree is in private memory and complete: each walk ends.
+template <class Region>
+Errc walk(const MovingTree& tree, const Region& region, const double& bound,
+          InstanceVisitor visit) {
+  const Floats d;
+  const MovingTree::Eights eights = tree.eights();
+  TraversalStack<MovingTree::Eights::kDepthLimit> stack;
+  std::uint32_t first[MovingTree::Eights::kDepthLimit];  // the node in lane 0, at each depth
+  float limit = region.limit_of(bound);
+  std::uint32_t node = eights.top;
+  for (std::size_t depth = 0;;) {
+    first[depth] = node;
+    const MovingTree::Eight& eight = eights.of[eights.number(node, depth)];
+    HWY_ALIGN float keys[kWideChildren];
+    std::uint32_t passing = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      VectorBox boxes;
+      for (std::size_t k = 0; k < 3; ++k) {
+        boxes.low[k] = hn::LoadU(d, eight.low[k] + part * kLanes);
+        boxes.high[k] = hn::LoadU(d, eight.high[k] + part * kLanes);
+      }
+      FloatVector key;
+      const std::uint32_t there = bits_of(hn::Le(boxes.low[0], boxes.high[0]));
+      passing |= (region.intersect(boxes, limit, key) & there) << (part * kLanes);
+      hn::Store(key, d, keys + part * kLanes);
+    }
+    stack.push(passing, keys, depth);
+    for (;;) {
+      typename decltype(stack)::Child at;
+      if (!stack.pop(limit, at)) return Errc::kOk;
+      node = first[at.depth] + at.number;
+      depth = at.depth + 1;
+      if (depth < eights.depth) break;
+      if (!visit(tree.instance({node, 0}))) return Errc::kOk;
+      limit = region.limit_of(bound);
+    }
+    node *= kWideChildren;
+  }
+}
+
+template <class Tree>
+Errc walk_box(const Tree& tree, const Box<double>& box, InstanceVisitor visit) {
   BoxRegion region;
   for (std::size_t k = 0; k < 3; ++k) region.bounds.set(k, box.low[k], box.high[k], 0);
-  return walk(top, region, 0, visit);
+  return walk(tree, region, 0, visit);
 }
 
-Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+template <class Tree>
+Errc walk_point(const Tree& tree, const Eigen::Vector3d& point, const double& bound,
                 InstanceVisitor visit) {
-  return walk(top, PointRegion{PointFilter(max_abs_of(top), point)}, bound, visit);
+  return walk(tree, PointRegion{PointFilter(max_abs_of(tree), point)}, bound, visit);
 }
 
-Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
-              InstanceVisitor visit) {
-  RayBoxFilter filter(ray.slab, AxisLanes(ray.origin), AxisLanes(ray.direction),
-                      std::max(enter, ray.s_min),
-                      RayBoxFilter::rounding(ray.near_of(top)) +
-                          RayBoxFilter::given_away(largest_magnitude(ray.origin), ray.max_abs));
-  filter.widen(ray.extent);
-  return walk(top, RayRegion{filter}, bound, visit);
+template <class Tree>
+Errc walk_ray(const Tree& tree, const TopLevelRay& /*ray*/, const RayBoxFilter& filter,
+              const double& bound, InstanceVisitor visit) {
+  return walk(tree, RayRegion{filter}, bound, visit);
+}
+#endif
+
+Errc walk_top_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+  return walk_box(top, box, visit);
+}
+Errc walk_top_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                    InstanceVisitor visit) {
+  return walk_point(top, point, bound, visit);
+}
+Errc walk_top_ray(const TopLevel& top, const TopLevelRay& ray, const RayBoxFilter& filter,
+                  const double& bound, InstanceVisitor visit) {
+  return walk_ray(top, ray, filter, bound, visit);
+}
+
+#if HWY_TARGET == HWY_SCALAR || BOXTREE_HAS_SPECIAL_WALKS
+Errc walk_moving_box(const MovingTree& tree, const Box<double>& box, InstanceVisitor visit) {
+  return walk_box(tree, box, visit);
+}
+Errc walk_moving_point(const MovingTree& tree, const Eigen::Vector3d& point, const double& bound,
+                       InstanceVisitor visit) {
+  return walk_point(tree, point, bound, visit);
+}
+Errc walk_moving_ray(const MovingTree& tree, const TopLevelRay& ray, const RayBoxFilter& filter,
+                     const double& bound, InstanceVisitor visit) {
+  return walk_ray(tree, ray, filter, bound, visit);
+}
+#else
+Errc walk_moving_box(const MovingTree& tree, const Box<double>& box, InstanceVisitor visit) {
+  return walk_one_by_one(tree, box, visit);
+}
+Errc walk_moving_point(const MovingTree& tree, const Eigen::Vector3d& point, const double& bound,
+                       InstanceVisitor visit) {
+  return walk_one_by_one(tree, point, bound, visit);
+}
+Errc walk_moving_ray(const MovingTree& tree, const TopLevelRay& ray, const RayBoxFilter& /*filter*/,
+                     const double& bound, InstanceVisitor visit) {
+  return walk_one_by_one(tree, ray, bound, visit);
 }
 #endif
 
@@ -152,40 +234,97 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-BOXTREE_EXPORT(walk_box);
-BOXTREE_EXPORT(walk_point);
-BOXTREE_EXPORT(walk_ray);
+BOXTREE_EXPORT(walk_top_box);
+BOXTREE_EXPORT(walk_top_point);
+BOXTREE_EXPORT(walk_top_ray);
+BOXTREE_EXPORT(walk_moving_box);
+BOXTREE_EXPORT(walk_moving_point);
+BOXTREE_EXPORT(walk_moving_ray);
 
-}  // namespace
+template <class Tree>
+constexpr bool kIsTop = std::is_same_v<Tree, TopLevel>;
 
-Errc walk_top_level_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  if (!top.has_float_nodes()) return walk_top_level_scalar(top, box, visit);
-  if (!boxes_overlap(root_box<float>(top), box)) return Errc::kOk;
-  return BOXTREE_DISPATCH(walk_box)(top, box, visit);
-}
+// What walks by vectors are told of a tree.
+struct FloatTree {
+  template <class Tree>
+  explicit FloatTree(const Tree& tree) : root(root_box<double>(tree)), max_abs(max_abs_of(tree)) {}
 
-Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
-                         InstanceVisitor visit) {
-  if (!top.has_float_nodes() || !PointFilter::is_near(max_abs_of(top), point)) {
-    return walk_top_level_scalar(top, point, bound, visit);
-  }
-  if (squared_distance(point, root_box<float>(top)) > bound) return Errc::kOk;
-  return BOXTREE_DISPATCH(walk_point)(top, point, bound, visit);
-}
+  Box<double> root;
+  double max_abs;
+};
 
-Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
-                         InstanceVisitor visit) {
-  const double max_abs = max_abs_of(top);
+// Whether a ray is compared with boxes in single precision, and may meet some.
+enum class Meeting { kNone, kByVectors, kOneByOne };
+
+// `filter`: set for kByVectors.
+Meeting prepare(const FloatTree& tree, const TopLevelRay& ray, double bound, RayBoxFilter& filter) {
   // A shape may be so large beside the tree that its size takes the digits; an ill-conditioned map
   // may widen the query by more than the tree's size; the filter is then useless.
   const double origin_max_abs = largest_magnitude(ray.origin);
-  const bool is_near = origin_max_abs <= 0x1p30 * max_abs && ray.near_of(top) <= 0x1p10 * max_abs &&
-                       RayBoxFilter::given_away(origin_max_abs, ray.max_abs) <= max_abs;
-  if (!top.has_float_nodes() || !is_near) return walk_top_level_scalar(top, ray, bound, visit);
-  const double enter = ray.slab.key(root_box<float>(top), ray.s_min);
-  if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Errc::kOk;
-  return BOXTREE_DISPATCH(walk_ray)(top, ray, enter, bound, visit);
+  const double near = tree.max_abs + ray.near_extent();
+  const double given_away = RayBoxFilter::given_away(origin_max_abs, ray.max_abs);
+  const bool is_near = origin_max_abs <= 0x1p30 * tree.max_abs && near <= 0x1p10 * tree.max_abs &&
+                       given_away <= tree.max_abs;
+  if (!is_near) return Meeting::kOneByOne;
+  const double enter = ray.slab.key(tree.root, ray.s_min);
+  if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Meeting::kNone;
+  filter = RayBoxFilter(ray.slab, AxisLanes(ray.origin), AxisLanes(ray.direction),
+                        std::max(enter, ray.s_min), RayBoxFilter::rounding(near) + given_away);
+  filter.widen(ray.extent);
+  return Meeting::kByVectors;
 }
+
+}  // namespace
+
+template <class Tree>
+Errc walk_by_vectors(const Tree& tree, const Box<double>& box, InstanceVisitor visit) {
+  if (!tree.has_float_nodes()) return walk_one_by_one(tree, box, visit);
+  if (!boxes_overlap(root_box<double>(tree), box)) return Errc::kOk;
+  if constexpr (kIsTop<Tree>) {
+    return BOXTREE_DISPATCH(walk_top_box)(tree, box, visit);
+  } else {
+    return BOXTREE_DISPATCH(walk_moving_box)(tree, box, visit);
+  }
+}
+
+template <class Tree>
+Errc walk_by_vectors(const Tree& tree, const Eigen::Vector3d& point, const double& bound,
+                     InstanceVisitor visit) {
+  if (!tree.has_float_nodes() || !PointFilter::is_near(max_abs_of(tree), point)) {
+    return walk_one_by_one(tree, point, bound, visit);
+  }
+  if (squared_distance(point, root_box<double>(tree)) > bound) return Errc::kOk;
+  if constexpr (kIsTop<Tree>) {
+    return BOXTREE_DISPATCH(walk_top_point)(tree, point, bound, visit);
+  } else {
+    return BOXTREE_DISPATCH(walk_moving_point)(tree, point, bound, visit);
+  }
+}
+
+template <class Tree>
+Errc walk_by_vectors(const Tree& tree, const TopLevelRay& ray, const double& bound,
+                     InstanceVisitor visit) {
+  RayBoxFilter filter;
+  const Meeting meeting =
+      tree.has_float_nodes() ? prepare(FloatTree(tree), ray, bound, filter) : Meeting::kOneByOne;
+  if (meeting == Meeting::kNone) return Errc::kOk;
+  if (meeting == Meeting::kOneByOne) return walk_one_by_one(tree, ray, bound, visit);
+  if constexpr (kIsTop<Tree>) {
+    return BOXTREE_DISPATCH(walk_top_ray)(tree, ray, filter, bound, visit);
+  } else {
+    return BOXTREE_DISPATCH(walk_moving_ray)(tree, ray, filter, bound, visit);
+  }
+}
+
+template Errc walk_by_vectors(const TopLevel&, const Box<double>&, InstanceVisitor);
+template Errc walk_by_vectors(const TopLevel&, const Eigen::Vector3d&, const double&,
+                              InstanceVisitor);
+template Errc walk_by_vectors(const TopLevel&, const TopLevelRay&, const double&, InstanceVisitor);
+template Errc walk_by_vectors(const MovingTree&, const Box<double>&, InstanceVisitor);
+template Errc walk_by_vectors(const MovingTree&, const Eigen::Vector3d&, const double&,
+                              InstanceVisitor);
+template Errc walk_by_vectors(const MovingTree&, const TopLevelRay&, const double&,
+                              InstanceVisitor);
 
 }  // namespace boxtree
 #endif

@@ -36,7 +36,7 @@ struct All {
     }
     return !apart;
   }
-  [[nodiscard]] bool leaf(NodeRef ref) { return found.insert(tree.moving(ref)).second; }
+  [[nodiscard]] bool leaf(NodeRef ref) { return found.insert(tree.instance(ref)).second; }
 };
 
 TEST(MovingTree, FindsWhatOverlapsBeforeAndAfterMoving) {
