@@ -283,5 +283,24 @@ TEST(TriangleRay, IsNeverNaN) {
   }
 }
 
+// Neighbours get the same numbers only if the axes of a ray are always chosen alike.
+TEST(RayShear, TheLargestComponentIsTheMainAxisAndTheFirstOfEqualOnes) {
+  struct Case {
+    Eigen::Vector3d direction;
+    int x, y, z;
+  };
+  const Case cases[] = {{{3, 1, 2}, 1, 2, 0},  {{1, 3, 2}, 2, 0, 1},   {{1, 2, 3}, 0, 1, 2},
+                        {{-3, 1, 2}, 1, 2, 0}, {{1, -3, 2}, 2, 0, 1},  {{1, 2, -3}, 0, 1, 2},
+                        {{1, 1, 1}, 1, 2, 0},  {{-1, 1, 1}, 1, 2, 0},  {{1, 2, 2}, 2, 0, 1},
+                        {{2, 1, -2}, 1, 2, 0}, {{2, 2, 1}, 1, 2, 0},   {{0, 0, 1}, 0, 1, 2},
+                        {{0, 1, 0}, 2, 0, 1},  {{1, 0, -0.0}, 1, 2, 0}};
+  for (const Case& expected : cases) {
+    const RayShear shear(Eigen::Vector3d::Zero(), expected.direction);
+    EXPECT_EQ(shear.axis_x, expected.x) << expected.direction.transpose();
+    EXPECT_EQ(shear.axis_y, expected.y) << expected.direction.transpose();
+    EXPECT_EQ(shear.axis_z, expected.z) << expected.direction.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace boxtree
