@@ -102,8 +102,8 @@ double touch_of_capsule(const MovingBall& ball, const Corners& corner,
   for (std::size_t i = 0; i < 3; ++i) {
     first = std::min(first, ball.touch_of_segment(corner[i] - arm, core));
     for (const Eigen::Vector3d& end : ends) {
-      first = std::min({first, ball.touch_of_segment(corner[i] + end, edge[i]),
-                        ball.touch_of_point(corner[i] + end)});
+      first = std::min(first, ball.touch_of_segment(corner[i] + end, edge[i]));
+      first = std::min(first, ball.touch_of_point(corner[i] + end));
     }
   }
   return first;

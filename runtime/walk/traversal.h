@@ -33,8 +33,9 @@ namespace boxtree {
     const double a = triangle.corner[0][axis];
     const double b = triangle.corner[1][axis];
     const double c = triangle.corner[2][axis];
-    box.low[k] = std::min({a, b, c});
-    box.high[k] = std::max({a, b, c});
+    // Not of lists, for which -O2 calls a function with a loop.
+    box.low[k] = std::min(std::min(a, b), c);
+    box.high[k] = std::max(std::max(a, b), c);
   }
   return box;
 }
@@ -51,7 +52,7 @@ template <class S>
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double p = point[static_cast<Eigen::Index>(k)];
-    const double outside = std::max({0.0, box.low[k] - p, p - box.high[k]});
+    const double outside = std::max(std::max(0.0, box.low[k] - p), p - box.high[k]);
     sum += outside * outside;
   }
   return sum;
