@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Builds and refits the tree over moving instances.
+// Builds the tree over moving instances.
 #include "runtime/scene/moving_tree.h"
 
 #include <algorithm>
@@ -68,7 +68,11 @@ MovingTree::MovingTree(std::span<const Box<double>> boxes, const Memory* memory)
   const std::size_t count_of_eights =
       eights_.depth == 0 ? 0 : eights_.number(2 * leaves_ - 1, eights_.depth - 1) + std::size_t{1};
   eight_ = Array<Eight>(count_of_eights, none, memory);
-  for (std::uint32_t node = 2 * leaves_ - 1; node > 1; --node) round(node);
+  std::size_t depth = eights_.depth;
+  for (std::uint32_t level = leaves_; level > 1; level /= 8) {
+    --depth;
+    for (std::uint32_t node = level; node < 2 * level; ++node) round(node, depth);
+  }
 }
 
 // Levels are those of the binary tree, of which leaves are the last: level l has nodes 2^l to
@@ -83,36 +87,6 @@ void MovingTree::number_eights() noexcept {
     eights_.first[eights_.depth++] = count - first_node / 8;
     count += std::max(first_node / 8, 1u);
   }
-}
-
-// To floats, if the node is on a level that has them.
-void MovingTree::round(std::uint32_t node) noexcept {
-  const std::uint32_t below = static_cast<std::uint32_t>(std::countr_zero(leaves_)) -
-                              static_cast<std::uint32_t>(std::bit_width(node) - 1);
-  if (node == 1 || below % 3 != 0) return;
-  Eight& eight = eight_[eights_.number(node, eights_.depth - 1 - below / 3)];
-  const Box<double>& box = nodes_[node];
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    eight.low[axis][node % 8] = float_below(box.low[axis]);
-    eight.high[axis][node % 8] = float_above(box.high[axis]);
-  }
-}
-
-void MovingTree::refit(std::uint32_t moving, const Box<double>& box) noexcept {
-  std::uint32_t node = leaves_ + place_[moving];
-  nodes_[node] = box;
-  round(node);
-  while (node > 1) {
-    node /= 2;
-    join(node);
-    round(node);
-  }
-}
-
-void MovingTree::join(std::uint32_t node) noexcept {
-  const std::size_t first = 2 * std::size_t{node};
-  nodes_[node] = nodes_[first];
-  expand(nodes_[node], nodes_[first + 1]);
 }
 
 }  // namespace boxtree

@@ -106,7 +106,7 @@ class MovingTree {
  private:
   void join(std::uint32_t node) noexcept;
   void number_eights() noexcept;
-  void round(std::uint32_t node) noexcept;
+  void round(std::uint32_t node, std::size_t depth) noexcept;
 
   std::uint32_t leaves_ = 0;
   Eights eights_;
