@@ -166,23 +166,39 @@ Errc walk(const MovingTree& tree, const Region& region, const double& bound,
   }
 }
 
+// Whether this instruction set has a walk of its own of such a tree.
+template <class Tree>
+constexpr bool kIsWalked = std::is_same_v<Tree, TopLevel> || BOXTREE_HAS_SPECIAL_WALKS;
+
 template <class Tree>
 Errc walk_box(const Tree& tree, const Box<double>& box, InstanceVisitor visit) {
-  BoxRegion region;
-  for (std::size_t k = 0; k < 3; ++k) region.bounds.set(k, box.low[k], box.high[k], 0);
-  return walk(tree, region, 0, visit);
+  if constexpr (kIsWalked<Tree>) {
+    BoxRegion region;
+    for (std::size_t k = 0; k < 3; ++k) region.bounds.set(k, box.low[k], box.high[k], 0);
+    return walk(tree, region, 0, visit);
+  } else {
+    return walk_one_by_one(tree, box, visit);
+  }
 }
 
 template <class Tree>
 Errc walk_point(const Tree& tree, const Eigen::Vector3d& point, const double& bound,
                 InstanceVisitor visit) {
-  return walk(tree, PointRegion{PointFilter(max_abs_of(tree), point)}, bound, visit);
+  if constexpr (kIsWalked<Tree>) {
+    return walk(tree, PointRegion{PointFilter(max_abs_of(tree), point)}, bound, visit);
+  } else {
+    return walk_one_by_one(tree, point, bound, visit);
+  }
 }
 
 template <class Tree>
-Errc walk_ray(const Tree& tree, const TopLevelRay& /*ray*/, const RayBoxFilter& filter,
+Errc walk_ray(const Tree& tree, [[maybe_unused]] const TopLevelRay& ray, const RayBoxFilter& filter,
               const double& bound, InstanceVisitor visit) {
-  return walk(tree, RayRegion{filter}, bound, visit);
+  if constexpr (kIsWalked<Tree>) {
+    return walk(tree, RayRegion{filter}, bound, visit);
+  } else {
+    return walk_one_by_one(tree, ray, bound, visit);
+  }
 }
 #endif
 
@@ -198,7 +214,6 @@ Errc walk_top_ray(const TopLevel& top, const TopLevelRay& ray, const RayBoxFilte
   return walk_ray(top, ray, filter, bound, visit);
 }
 
-#if HWY_TARGET == HWY_SCALAR || BOXTREE_HAS_SPECIAL_WALKS
 Errc walk_moving_box(const MovingTree& tree, const Box<double>& box, InstanceVisitor visit) {
   return walk_box(tree, box, visit);
 }
@@ -210,19 +225,6 @@ Errc walk_moving_ray(const MovingTree& tree, const TopLevelRay& ray, const RayBo
                      const double& bound, InstanceVisitor visit) {
   return walk_ray(tree, ray, filter, bound, visit);
 }
-#else
-Errc walk_moving_box(const MovingTree& tree, const Box<double>& box, InstanceVisitor visit) {
-  return walk_one_by_one(tree, box, visit);
-}
-Errc walk_moving_point(const MovingTree& tree, const Eigen::Vector3d& point, const double& bound,
-                       InstanceVisitor visit) {
-  return walk_one_by_one(tree, point, bound, visit);
-}
-Errc walk_moving_ray(const MovingTree& tree, const TopLevelRay& ray, const RayBoxFilter& /*filter*/,
-                     const double& bound, InstanceVisitor visit) {
-  return walk_one_by_one(tree, ray, bound, visit);
-}
-#endif
 
 }  // namespace
 }  // namespace boxtree::HWY_NAMESPACE
