@@ -30,29 +30,25 @@ struct InstancesInBox : Instances<Tree> {
   }
 };
 
+// From near to far. Keys are computed by a function, so that all shapes share a walk.
 template <class Tree>
-struct InstancesNearPoint : Instances<Tree> {
-  const Eigen::Vector3d& point;
+struct InstancesByKey : Instances<Tree> {
+  FunctionRef<double(const Box<double>&)> key_of;
   const double& best;
 
   [[nodiscard]] double bound() const noexcept { return best; }
   template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return squared_distance(point, box);
+  [[nodiscard]] double key(const Box<S>& box) const {
+    return key_of(box_cast<double>(box));
   }
 };
 
 template <class Tree>
-struct InstancesOnRay : Instances<Tree> {
-  const TopLevelRay& ray;
-  const double& s_max;
-
-  [[nodiscard]] double bound() const noexcept { return s_max; }
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return ray.slab.key(box, ray.s_min);
-  }
-};
+Errc walk_near(const Tree& tree, FunctionRef<double(const Box<double>&)> key, const double& bound,
+               InstanceVisitor visit) {
+  InstancesByKey<Tree> query{{tree, visit}, key, bound};
+  return traverse_nearest(tree, tree.decoder(), query);
+}
 
 }  // namespace
 
@@ -65,15 +61,15 @@ Errc walk_one_by_one(const Tree& tree, const Box<double>& box, InstanceVisitor v
 template <class Tree>
 Errc walk_one_by_one(const Tree& tree, const Eigen::Vector3d& point, const double& bound,
                      InstanceVisitor visit) {
-  InstancesNearPoint<Tree> query{{tree, visit}, point, bound};
-  return traverse_nearest(tree, tree.decoder(), query);
+  const auto key = [&](const Box<double>& box) { return squared_distance(point, box); };
+  return walk_near(tree, key, bound, visit);
 }
 
 template <class Tree>
 Errc walk_one_by_one(const Tree& tree, const TopLevelRay& ray, const double& bound,
                      InstanceVisitor visit) {
-  InstancesOnRay<Tree> query{{tree, visit}, ray, bound};
-  return traverse_nearest(tree, tree.decoder(), query);
+  const auto key = [&](const Box<double>& box) { return ray.slab.key(box, ray.s_min); };
+  return walk_near(tree, key, bound, visit);
 }
 
 template Errc walk_one_by_one(const TopLevel&, const Box<double>&, InstanceVisitor);

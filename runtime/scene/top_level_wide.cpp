@@ -281,7 +281,6 @@ Meeting prepare(const FloatTree& tree, const TopLevelRay& ray, double bound, Ray
 template <class Tree>
 Errc walk_by_vectors(const Tree& tree, const Box<double>& box, InstanceVisitor visit) {
   if (!tree.has_float_nodes()) return walk_one_by_one(tree, box, visit);
-  if (!boxes_overlap(root_box<double>(tree), box)) return Errc::kOk;
   if constexpr (kIsTop<Tree>) {
     return BOXTREE_DISPATCH(walk_top_box)(tree, box, visit);
   } else {
@@ -295,7 +294,6 @@ Errc walk_by_vectors(const Tree& tree, const Eigen::Vector3d& point, const doubl
   if (!tree.has_float_nodes() || !PointFilter::is_near(max_abs_of(tree), point)) {
     return walk_one_by_one(tree, point, bound, visit);
   }
-  if (squared_distance(point, root_box<double>(tree)) > bound) return Errc::kOk;
   if constexpr (kIsTop<Tree>) {
     return BOXTREE_DISPATCH(walk_top_point)(tree, point, bound, visit);
   } else {
