@@ -65,10 +65,10 @@ MovingTree::MovingTree(std::span<const Box<double>> boxes, const Memory* memory)
     std::ranges::fill(none.low[axis], std::numeric_limits<float>::infinity());
     std::ranges::fill(none.high[axis], -std::numeric_limits<float>::infinity());
   }
+  std::size_t depth = depths_;
   const std::size_t count_of_eights =
-      eights_.depth == 0 ? 0 : eights_.number(2 * leaves_ - 1, eights_.depth - 1) + std::size_t{1};
+      depth == 0 ? 0 : number_of_eight(2 * leaves_ - 1, depth - 1) + std::size_t{1};
   eight_ = Array<Eight>(count_of_eights, none, memory);
-  std::size_t depth = eights_.depth;
   for (std::uint32_t level = leaves_; level > 1; level /= 8) {
     --depth;
     for (std::uint32_t node = level; node < 2 * level; ++node) round(node, depth);
@@ -79,12 +79,11 @@ MovingTree::MovingTree(std::span<const Box<double>> boxes, const Memory* memory)
 // 2^(l + 1) - 1.
 void MovingTree::number_eights() noexcept {
   const auto levels = static_cast<std::uint32_t>(std::countr_zero(leaves_));
-  eights_ = {};
   std::uint32_t count = 0;  // of those of lower depths
   for (std::uint32_t level = levels == 0 ? 1 : (levels - 1) % 3 + 1; level <= levels; level += 3) {
     const std::uint32_t first_node = std::uint32_t{1} << level;
-    if (eights_.depth == 0) eights_.top = first_node & ~7u;
-    eights_.first[eights_.depth++] = count - first_node / 8;
+    if (depths_ == 0) top_node_ = first_node & ~7u;
+    first_eight_[depths_++] = count - first_node / 8;
     count += std::max(first_node / 8, 1u);
   }
 }

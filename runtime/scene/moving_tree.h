@@ -48,20 +48,9 @@ class MovingTree {
     float low[3][8];
     float high[3][8];
   };
-  /// Those of every third level, from the leaves up; the first have the root above them, one to
-  /// three levels higher. Node n of depth d is in lane n % 8 of number (n / 8) + first[d].
-  struct Eights {
-    static constexpr std::size_t kDepthLimit = 11;  // of 32 levels
-
-    const Eight* of = nullptr;
-    std::uint32_t depth = 0;                         // of leaves, plus one
-    std::array<std::uint32_t, kDepthLimit> first{};  // modulo 2^32
-    std::uint32_t top = 0;                           // the node in lane 0 of depth 0
-
-    [[nodiscard]] std::uint32_t number(std::uint32_t node, std::size_t node_depth) const noexcept {
-      return node / 8 + first[node_depth];
-    }
-  };
+  /// How many of the levels there are in eights: every third, from the leaves up. The first has the
+  /// root one to three levels above it.
+  static constexpr std::size_t kMostDepths = 11;  // of 32 levels
 
   explicit MovingTree(const Memory* memory = nullptr) noexcept
       : nodes_(memory), eight_(memory), place_(memory), at_place_(memory) {}
@@ -73,7 +62,9 @@ class MovingTree {
     std::swap(leaves_, other.leaves_);
     nodes_.swap(other.nodes_);
     eight_.swap(other.eight_);
-    std::swap(eights_, other.eights_);
+    std::swap(depths_, other.depths_);
+    std::swap(top_node_, other.top_node_);
+    first_eight_.swap(other.first_eight_);
     place_.swap(other.place_);
     at_place_.swap(other.at_place_);
   }
@@ -86,14 +77,17 @@ class MovingTree {
   [[nodiscard]] NodeRef root_ref() const noexcept { return {1, 0}; }
   [[nodiscard]] Decoder decoder() const noexcept { return {nodes_.data(), leaves_}; }
   [[nodiscard]] const Box<double>& root_box() const noexcept { return nodes_[1]; }
-  /// Whether it has eights() that filters in single precision may be used for.
+  /// Whether it has eights that filters in single precision may be used for.
   [[nodiscard]] bool has_float_nodes() const noexcept {
     return !empty() && !is_leaf() && is_in_float_range(root_box());
   }
-  [[nodiscard]] Eights eights() const noexcept {
-    Eights eights = eights_;
-    eights.of = eight_.data();
-    return eights;
+  /// See kMostDepths; leaves are of the last.
+  [[nodiscard]] std::uint32_t depths() const noexcept { return depths_; }
+  /// The node in lane 0 of the one eight of depth 0.
+  [[nodiscard]] std::uint32_t top_node() const noexcept { return top_node_; }
+  /// That of a node, which is in lane node % 8.
+  [[nodiscard]] const Eight& eight(std::uint32_t node, std::size_t depth) const noexcept {
+    return eight_[number_of_eight(node, depth)];
   }
   [[nodiscard]] const Box<double>& box(std::uint32_t moving) const noexcept {
     return nodes_[leaves_ + place_[moving]];
@@ -107,9 +101,16 @@ class MovingTree {
   void join(std::uint32_t node) noexcept;
   void number_eights() noexcept;
   void round(std::uint32_t node, std::size_t depth) noexcept;
+  [[nodiscard]] std::uint32_t number_of_eight(std::uint32_t node,
+                                              std::size_t depth) const noexcept {
+    return node / 8 + first_eight_[depth];
+  }
 
   std::uint32_t leaves_ = 0;
-  Eights eights_;
+  std::uint32_t depths_ = 0;
+  std::uint32_t top_node_ = 0;
+  // Of each depth: the number of its first eight, less what node / 8 is there, modulo 2^32.
+  std::array<std::uint32_t, kMostDepths> first_eight_{};
   Array<Box<double>> nodes_;  // [2 leaves_]; node 0 is not used
   Array<Eight> eight_;
   Array<std::uint32_t> place_;     // of each moving instance

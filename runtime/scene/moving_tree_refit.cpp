@@ -5,7 +5,7 @@
 namespace boxtree {
 
 void MovingTree::round(std::uint32_t node, std::size_t depth) noexcept {
-  Eight& eight = eight_[eights_.number(node, depth)];
+  Eight& eight = eight_[number_of_eight(node, depth)];
   const Box<double>& box = nodes_[node];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     eight.low[axis][node % 8] = float_below(box.low[axis]);
@@ -17,7 +17,7 @@ void MovingTree::round(std::uint32_t node, std::size_t depth) noexcept {
 void MovingTree::refit(std::uint32_t moving, const Box<double>& box) noexcept {
   std::uint32_t node = leaves_ + place_[moving];
   nodes_[node] = box;
-  std::size_t depth = eights_.depth;
+  std::size_t depth = depths_;
   for (std::uint32_t level = 0; node > 1; ++level) {
     if (level % 3 == 0) round(node, --depth);
     node /= 2;

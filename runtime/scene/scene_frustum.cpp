@@ -101,15 +101,11 @@ struct FrustumInScene : InstanceOutcome {
 
     template <class S>
     [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-      return query.overlaps(box);
+      return query.sides.overlaps(box);
     }
     [[nodiscard]] bool leaf(NodeRef ref) const { return visit(tree.instance(ref)); }
   };
 
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return sides.overlaps(box);
-  }
   template <class Tree>
   [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor visit) const {
     Instances<Tree> instances{*this, tree, visit, WalkBound(tree.node_count())};

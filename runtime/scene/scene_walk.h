@@ -56,10 +56,6 @@ struct InstanceOutcome {
 struct BoxInFrame {
   Box<double> in_frame;
 
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return boxes_overlap(box, in_frame);
-  }
   template <class Tree>
   [[nodiscard]] Errc walk(const Tree& tree, InstanceVisitor instances) const {
     return walk_instances(tree, instances, in_frame);
@@ -68,9 +64,8 @@ struct BoxInFrame {
 
 // Members of the queries of a scene, below:
 // query.visit(instance, const BoundScene::Placed&) -> bool: whether to go on.
-// query.walk(const TopLevel& or const MovingTree&, InstanceVisitor) -> Errc: walk_instances with
-// the
-//   query's shape.
+// query.walk(tree, InstanceVisitor) -> Errc: walk_instances with the query's shape; `tree`: a
+//   TopLevel or a MovingTree.
 // query.admission; and query.error, which is set when an instance is corrupt.
 
 /// Counts an instance and visits it; whether to go on.

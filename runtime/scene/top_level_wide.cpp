@@ -131,14 +131,13 @@ template <class Region>
 Errc walk(const MovingTree& tree, const Region& region, const double& bound,
           InstanceVisitor visit) {
   const Floats d;
-  const MovingTree::Eights eights = tree.eights();
-  TraversalStack<MovingTree::Eights::kDepthLimit> stack;
-  std::uint32_t first[MovingTree::Eights::kDepthLimit];  // the node in lane 0, at each depth
+  TraversalStack<MovingTree::kMostDepths> stack;
+  std::uint32_t first[MovingTree::kMostDepths];  // the node in lane 0, at each depth
   float limit = region.limit_of(bound);
-  std::uint32_t node = eights.top;
+  std::uint32_t node = tree.top_node();
   for (std::size_t depth = 0;;) {
     first[depth] = node;
-    const MovingTree::Eight& eight = eights.of[eights.number(node, depth)];
+    const MovingTree::Eight& eight = tree.eight(node, depth);
     HWY_ALIGN float keys[kWideChildren];
     std::uint32_t passing = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
@@ -158,7 +157,7 @@ Errc walk(const MovingTree& tree, const Region& region, const double& bound,
       if (!stack.pop(limit, at)) return Errc::kOk;
       node = first[at.depth] + at.number;
       depth = at.depth + 1;
-      if (depth < eights.depth) break;
+      if (depth < tree.depths()) break;
       if (!visit(tree.instance({node, 0}))) return Errc::kOk;
       limit = region.limit_of(bound);
     }
