@@ -215,8 +215,8 @@ Segment remaining_segment(const Triangle& t) {
   return {*ends.first, *ends.second};
 }
 
-bool segment_intersects_triangle(const Segment& s, const Triangle& t,
-                                 const Projection& projection) {
+[[gnu::cold]] bool segment_intersects_triangle(const Segment& s, const Triangle& t,
+                                               const Projection& projection) {
   const std::array<Eigen::Vector3d, 3>& c = t.corner;
   const int from_side = orient3d(c[0], c[1], c[2], s.from);
   const int to_side = orient3d(c[0], c[1], c[2], s.to);
@@ -237,7 +237,7 @@ bool segment_intersects_triangle(const Segment& s, const Triangle& t,
 
 // Coplanar segments intersect if their projections do along an axis that is not in their plane.
 // Testing along all three is equivalent and needs no choice.
-bool segments_intersect(const Segment& s, const Segment& t) {
+[[gnu::cold]] bool segments_intersect(const Segment& s, const Segment& t) {
   if (orient3d(s.from, s.to, t.from, t.to) != 0) return false;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (!flat_shapes_overlap(flatten(s, axis), flatten(t, axis))) return false;

@@ -134,18 +134,18 @@ class LeafFloats {
     return is_direct_ ? first_ + face_and_half(lane) / 2 : batch_.face[lane];
   }
 
+  /// Which of the face's triangles it is.
+  [[nodiscard]] std::uint32_t half(std::uint32_t lane) const {
+    return is_direct_ ? face_and_half(lane) % 2 : half_of_face(batch_, lane);
+  }
+
   /// Calls visit(triangle, face, half) with the exact triangle of a lane. False when its bytes are
   /// corrupt.
   template <class Visitor>
   bool with_triangle(std::uint32_t lane, Visitor&& visit) {
-    if (!is_direct_) {
-      visit(batch_.triangle(lane), batch_.face[lane], half_of_face(batch_, lane));
-      return true;
-    }
     Triangle triangle;
     if (!exact_triangle(lane, triangle)) return false;
-    const std::uint32_t named = face_and_half(lane);
-    visit(triangle, first_ + named / 2, named % 2);
+    visit(triangle, face(lane), half(lane));
     return true;
   }
 
@@ -264,8 +264,12 @@ class LeafFloats {
   }
 #endif
 
-  // The triangle of a lane of a leaf that was gathered. Not inlined, for the size of the code.
+  // The triangle of a lane. Not inlined, for the size of the code.
   HWY_NOINLINE bool exact_triangle(std::uint32_t lane, Triangle& triangle) {
+    if (!is_direct_) {
+      triangle = batch_.triangle(lane);
+      return true;
+    }
 #if BOXTREE_HAS_EIGHT_LANES
     if (!reader_.has_clusters() && !floats_.is_f64) return exact_triangle_of_arrays(lane, triangle);
 #endif
