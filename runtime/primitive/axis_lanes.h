@@ -19,7 +19,8 @@ struct alignas(16) AxisLanes {
   static constexpr std::size_t kCount = 4;
 
   AxisLanes() noexcept = default;  // unspecified numbers
-  AxisLanes(double x, double y, double z) noexcept : lane{x, y, z, z} {}
+  AxisLanes(double x, double y, double z) noexcept : AxisLanes(x, y, z, z) {}
+  AxisLanes(double x, double y, double z, double fourth) noexcept : lane{x, y, z, fourth} {}
   explicit AxisLanes(const Eigen::Vector3d& v) noexcept : AxisLanes(v[0], v[1], v[2]) {}
 
   template <class Index>

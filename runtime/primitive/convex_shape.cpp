@@ -22,18 +22,6 @@ Eigen::Vector3d ConvexShape::half_extents() const noexcept {
   return extent * (1 + 8 * kRoundoffF64);
 }
 
-double ConvexShape::outer_radius() const noexcept {
-  // No sum of the axes is longer. The products of different axes of a box are zero but for
-  // rounding; those of its image in another space need not be.
-  double squared = 0;
-  for (std::uint32_t i = 0; i < axes; ++i) {
-    for (std::uint32_t j = 0; j < axes; ++j) {
-      squared += half[i] * half[j] * std::abs(dot(axis[i], axis[j]));
-    }
-  }
-  return (radius + std::sqrt(squared) + 2 * error) * (1 + 16 * kRoundoffF64);
-}
-
 namespace {
 
 double point_distance_error(double max_abs) noexcept {
@@ -58,15 +46,43 @@ ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner) no
   return contact_points(shape, corner, closest_points(shape, corner));
 }
 
-ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner,
-                             const ClosestPoints& points) noexcept {
-  if (shape.axes == 0) return points;
-  // What the line between them separates by their distance, but for rounding, has no closer points.
+ClosestPoints guessed_points(const ConvexShape& shape, const Corners& corner,
+                             CoreGuess guess) noexcept {
+  if (guess == CoreGuess::kNone || shape.axes == 0) return closest_points(shape, corner);
+  const Eigen::Vector3d arm = shape.half[0] * shape.axis[0];
+  const TriangleDistance found = closest_points_of_part(
+      -arm, arm, {corner},
+      static_cast<std::size_t>(guess) - static_cast<std::size_t>(CoreGuess::kFirstEnd));
+  return {found.upper, found.first, found.second - found.first};
+}
+
+namespace {
+
+// Whether nothing is closer: what the line between the points separates by their distance, but for
+// rounding, has no closer points.
+bool are_closest(const ConvexShape& shape, const Corners& corner,
+                 const ClosestPoints& points) noexcept {
   const auto [low, high, half] = project(points.between, shape, corner);
   const double square = squared_length(points.between);
   const double error =
       points.upper - std::sqrt(square) + kSeparationError * (max_abs_of(corner) + half);
-  if (square > 0 && low - half >= square - 2 * error * std::sqrt(square)) return points;
+  return square > 0 && low - half >= square - 2 * error * std::sqrt(square);
+}
+
+}  // namespace
+
+ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner,
+                             CoreGuess guess) noexcept {
+  if (guess != CoreGuess::kNone && shape.axes != 0) {
+    const ClosestPoints points = guessed_points(shape, corner, guess);
+    if (are_closest(shape, corner, points)) return points;
+  }
+  return contact_points(shape, corner);
+}
+
+ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner,
+                             const ClosestPoints& points) noexcept {
+  if (shape.axes == 0 || are_closest(shape, corner, points)) return points;
   const CoreDistance certain = core_distance(shape, corner);
   return {certain.upper, certain.core, certain.between};
 }

@@ -54,8 +54,6 @@ struct ConvexShape {
 
   /// Half the extent of its bounds, on every axis, not rounded down.
   [[nodiscard]] Eigen::Vector3d half_extents() const noexcept;
-  /// Of a ball around its center that holds it, not rounded down.
-  [[nodiscard]] double outer_radius() const noexcept;
 };
 
 /// Relative to a point.
@@ -108,6 +106,19 @@ struct ClosestPoints {
 /// The same of a core that may pierce the triangle; at the cost of core_distance() if it seems to.
 [[nodiscard]] ClosestPoints contact_points(const ConvexShape& shape,
                                            const Corners& corner) noexcept;
+
+/// What of a capsule's core may be closest to a triangle: an end, or what lies between them, to
+/// one of the edges. A guess that says where to look first; in the order of
+/// closest_points_of_part().
+enum class CoreGuess : std::uint8_t { kNone, kFirstEnd, kLastEnd, kEdge0, kEdge1, kEdge2 };
+
+/// Points of core and triangle that are closest to each other if the guess is right; those of
+/// closest_points() without one.
+[[nodiscard]] ClosestPoints guessed_points(const ConvexShape& shape, const Corners& corner,
+                                           CoreGuess guess) noexcept;
+/// contact_points(), at less cost where the guess is right.
+[[nodiscard]] ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner,
+                                           CoreGuess guess) noexcept;
 /// From those that closest_points() has found.
 [[nodiscard]] ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner,
                                            const ClosestPoints& points) noexcept;

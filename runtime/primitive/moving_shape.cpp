@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/primitive/box_axes.h"
+#include "runtime/primitive/moving_box.h"
 #include "runtime/primitive/normal.h"
 #include "runtime/primitive/penetration.h"
 #include "runtime/primitive/rounding.h"
@@ -86,11 +86,13 @@ struct Line {
   double gap;
 };
 
-// The closest points at s, found to within rounding.
+// The closest points at s, found to within rounding, or those that a guess takes for them.
 struct Approach {
-  [[gnu::noinline]] Approach(const MovingShape& moving, const Triangle& triangle,
-                             double at) noexcept
-      : s(at), corner(placed(moving, triangle, at)), points(closest_points(moving.shape, corner)) {}
+  [[gnu::noinline]] Approach(const MovingShape& moving, const Triangle& triangle, double at,
+                             CoreGuess guess = CoreGuess::kNone) noexcept
+      : s(at),
+        corner(placed(moving, triangle, at)),
+        points(guessed_points(moving.shape, corner, guess)) {}
 
   [[nodiscard]] Line line(const MovingShape& moving) const noexcept {
     return {moving, corner, points.between};
@@ -131,7 +133,7 @@ struct Approach {
 // Where an approach has led: to `s`, before which nothing touches, whether they may touch there,
 // and the closest points there where these tell.
 struct Approached {
-  double s;
+  MovingShape::Touch at;
   bool is_touch;
   std::optional<ClosestPoints> points;
 };
@@ -142,12 +144,12 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
                                      double from, double to) noexcept {
   constexpr double kShorten = 1 - 8 * kRoundoffF64;  // what the quotient rounds up
   double s = from;
-  const double estimate =
-      moving.direction.isZero(0)
-          ? kInfinite
-          : estimated_touch(moving.shape, moving.direction, placed(moving, triangle, from));
-  if (estimate < kInfinite) {
-    const Approach look(moving, triangle, from + estimate);
+  TouchEstimate estimate;
+  if (!moving.direction.isZero(0)) {
+    estimate = estimated_touch(moving.shape, moving.direction, placed(moving, triangle, from));
+  }
+  if (estimate.s < kInfinite) {
+    const Approach look(moving, triangle, from + estimate.s, estimate.core);
     const Line line = look.line(moving);
     if (line.is_direction() && line.slowest() > 0) {
       // The gap was larger before, if it is one; else they do not touch before it was.
@@ -155,12 +157,14 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
                                      : line.gap / line.slowest() * (1 + 8 * kRoundoffF64);
       s = std::max(from, look.s + by);
       if (s > to) return std::nullopt;
-      if (look.may_touch(moving, line, s)) return Approached{s, true, std::nullopt};
+      if (look.may_touch(moving, line, s)) {
+        return Approached{{s, estimate.core}, true, std::nullopt};
+      }
     }
   }
   for (int step = 0; step < kMostSteps; ++step) {
     const Approach look(moving, triangle, s);
-    if (look.may_touch(moving)) return Approached{s, true, look.points};
+    if (look.may_touch(moving)) return Approached{{s}, true, look.points};
     Line line = look.line(moving);
     if (!line.shows_gap()) line = other_line(moving, look.corner, look.points.between);
     if (!line.shows_gap()) break;
@@ -170,19 +174,20 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
     s = next;
     if (s > to) return std::nullopt;
   }
-  return Approached{s, false, std::nullopt};
+  return Approached{{s}, false, std::nullopt};
 }
 
 // From `from` on, before which nothing touches.
-std::optional<double> first_touch_by_distance(const MovingShape& moving, const Triangle& triangle,
-                                              double from, double to) noexcept {
+std::optional<MovingShape::Touch> first_touch_by_distance(const MovingShape& moving,
+                                                          const Triangle& triangle, double from,
+                                                          double to) noexcept {
   constexpr double kShorten = 1 - 8 * kRoundoffF64;  // what the divisions and sums round up
   const double reach = moving.shape.radius + moving.doubt;
   double s = from;
   for (int step = 0; step < kMostSteps; ++step) {
     const Corners corner = placed(moving, triangle, s);
     const CoreDistance at = core_distance(moving.shape, corner);
-    if (may_touch(moving, at)) return s;
+    if (may_touch(moving, at)) return MovingShape::Touch{s};
     // Nothing comes nearer by more than it moves.
     double advance = (at.lower - reach) / longest_length(moving.direction);
     if (at.along > reach) {
@@ -194,125 +199,20 @@ std::optional<double> first_touch_by_distance(const MovingShape& moving, const T
       advance = std::max(advance, line.gap / line.fastest());
     }
     const double next = s + advance * kShorten;
-    if (!(next > s)) return s;
+    if (!(next > s)) return MovingShape::Touch{s};
     s = next;
     if (s > to) return std::nullopt;
   }
-  return s;
+  return MovingShape::Touch{s};
 }
 
-std::optional<double> first_touch_of_core(const MovingShape& moving, const Triangle& triangle,
-                                          double from, double to) noexcept {
+std::optional<MovingShape::Touch> first_touch_of_core(const MovingShape& moving,
+                                                      const Triangle& triangle, double from,
+                                                      double to) noexcept {
   const std::optional<Approached> quick = approached(moving, triangle, from, to);
   if (!quick) return std::nullopt;
-  return quick->is_touch ? quick->s : first_touch_by_distance(moving, triangle, quick->s, to);
-}
-
-// A box and a triangle along all directions that can separate them, in time.
-class BoxOnItsWay {
- public:
-  BoxOnItsWay(const MovingShape& moving, const Triangle& triangle, double at) noexcept
-      : moving_(moving),
-        axes_(moving.shape, triangle, placed(moving, triangle, at)),
-        error_(axes_.error() + 2 * moving.doubt),
-        direction_(in_frame_of(moving.shape, moving.direction)) {}
-
-  // Ends early where first_touch() is nothing.
-  [[gnu::noinline]] void try_all(double from = 0, double to = kInfinite) noexcept {
-    axes_.visit([&](const BoxAxis& axis) {
-      try_axis(axis);
-      return axis.is_more_to_come || first_touch(from, to).has_value();
-    });
-  }
-
-  // By the axes so far, of a shape that is where it is at `from`.
-  [[nodiscard]] std::optional<double> first_touch(double from, double to) const noexcept {
-    const double s = from + enter * (1 - 8 * kRoundoffF64);
-    return enter <= leave && s <= to ? std::optional(s) : std::nullopt;
-  }
-
-  // From the triangle to the box: see `overlap`.
-  [[nodiscard]] Eigen::Vector3d normal() const noexcept {
-    return from_frame_of(moving_.shape, back_);
-  }
-  // How far projections are off.
-  [[nodiscard]] double error() const noexcept { return error_; }
-
-  double enter = 0;          // they do not touch before
-  double leave = kInfinite;  // nor after
-  double enter_by = 0;       // they touch by then, if at all
-  // Of the axes along which they come nearer, that along which they overlap least: by how much, or
-  // less than 0 where it is a gap. Of equal ones those of the box, then the normal of the face.
-  double overlap = kInfinite;
-
- private:
-  // How far speeds along a unit vector are off.
-  static constexpr double kSpeedError = 16 * kRoundoffF64;
-
-  void try_axis(const BoxAxis& axis) noexcept {
-    // They overlap while low - half <= s * speed <= high + half.
-    const double low = axis.low - axis.half, high = axis.high + axis.half;
-    const double speed = dot(axis.along, direction_);
-    if (speed < 0) {
-      try_interval(-high, -low, -speed, axis.along, 1);
-    } else {
-      try_interval(low, high, speed, axis.along, -1);
-    }
-  }
-
-  // `speed` is not negative; `back` times the axis is against the motion.
-  void try_interval(double first, double last, double speed, const Eigen::Vector3d& axis,
-                    double back) noexcept {
-    const double slowest = speed - kSpeedError;
-    if (slowest > 0 && -first < overlap - 2 * error_) {
-      overlap = -first;
-      back_ = back * axis;
-    }
-    if (first > error_) {  // ahead
-      enter = std::max(enter, (first - error_) / (speed + kSpeedError));
-      enter_by = std::max(enter_by, slowest > 0 ? (first + error_) / slowest : kInfinite);
-    } else if (first > -error_ && slowest > 0) {
-      enter_by = std::max(enter_by, (first + error_) / slowest);
-    }
-    if (last < -error_) {
-      leave = -1;  // behind
-    } else if (slowest > 0) {
-      leave = std::min(leave, (last + error_) / slowest);
-    }
-  }
-
-  const MovingShape& moving_;
-  const BoxAxes axes_;
-  double error_;
-  Eigen::Vector3d direction_;  // in the box's frame
-  Eigen::Vector3d back_ = Eigen::Vector3d::Zero();
-};
-
-std::optional<double> first_touch_of_box(const MovingShape& moving, const Triangle& triangle,
-                                         double from, double to) noexcept {
-  BoxOnItsWay both(moving, triangle, from);
-  both.try_all(from, to);
-  return both.first_touch(from, to);
-}
-
-MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& triangle,
-                                    double s) noexcept {
-  const Corners corner = placed(moving, triangle, s);
-  BoxOnItsWay both(moving, triangle, s);
-  both.try_all();
-  MovingShape::Contact contact;
-  const double error = 2 * both.error();
-  contact.by = s + std::min(both.enter_by, std::max(both.leave, 0.0)) * (1 + 8 * kRoundoffF64);
-  contact.point = moving.center_at(s) + point_inside_box(moving.shape, error, corner);
-  if (!(both.overlap <= 2 * error)) {  // they have overlapped from the start on
-    const Penetration start = penetration(moving.shape, corner, moving.doubt);
-    contact.normal = start.normal;
-    contact.feature = start.feature;
-    return contact;
-  }
-  contact.normal = both.normal();
-  contact.feature = farthest_feature(contact.normal, corner, 2 * error);
-  return contact;
+  if (quick->is_touch) return quick->at;
+  return first_touch_by_distance(moving, triangle, quick->at.s, to);
 }
 
 // What is known of how near a core and a triangle are.
@@ -327,23 +227,24 @@ Nearness nearness_of(const ClosestPoints& at) noexcept {
   return {at.between, length, 2 * length - at.upper, at.upper};
 }
 
-Nearness nearness(const MovingShape& moving, const Corners& corner) noexcept {
+Nearness nearness(const MovingShape& moving, const Corners& corner, CoreGuess guess) noexcept {
   if (moving.shape.hull != nullptr) {
     const CoreDistance at = core_distance(moving.shape, corner);
     return {at.between, at.length, at.lower, at.upper};
   }
-  return nearness_of(contact_points(moving.shape, corner));
+  return nearness_of(contact_points(moving.shape, corner, guess));
 }
 
-// From s on, where they are `at`: when it is certain that they touch, or when the distance does not
+// From a touch on, where they are `at`: when it is certain that they touch, or when the distance does not
 // fall any more.
-double certain_by(const MovingShape& moving, const Triangle& triangle, double s, Nearness at,
+double certain_by(const MovingShape& moving, const Triangle& triangle,
+                  const MovingShape::Touch& touch, Nearness at,
                   const Eigen::Vector3d& normal) noexcept {
   const double doubt = moving.doubt, radius = moving.shape.radius;
   // A distance tells no more how deep a hull is, nor a core that has next to nothing around it.
   const bool is_core = moving.shape.hull != nullptr || radius <= 8 * doubt;
   const double way = longest_length(moving.direction);
-  double by = s, step = 0;
+  double by = touch.s, step = 0;
   double passed = kInfinite;  // a step after which it is apart again
   for (int n = 0; n < kMostSteps; ++n) {
     const double missing = at.upper + doubt - radius;
@@ -357,7 +258,8 @@ double certain_by(const MovingShape& moving, const Triangle& triangle, double s,
     double next = is_last ? step + (at.length + 2 * doubt) / speed
                           : std::max(2 * step, 2 * missing * at.length / speed);
     if (!(next < passed)) next = step + (passed - step) / 2;
-    const Nearness there = nearness(moving, placed(moving, triangle, s + next));
+    const Nearness there =
+        nearness(moving, placed(moving, triangle, touch.s + next), touch.core);
     if (there.lower > radius + 6 * doubt) {  // it has passed the triangle, or a corner
       if (is_last) break;
       passed = next;
@@ -365,30 +267,30 @@ double certain_by(const MovingShape& moving, const Triangle& triangle, double s,
     }
     at = there;
     step = next;
-    by = s + step;
+    by = touch.s + step;
     if (is_last) break;
   }
   return by;
 }
 
 MovingShape::Contact contact_of_hull(const MovingShape& moving, const Triangle& triangle,
-                                     double s) noexcept {
+                                     const MovingShape::Touch& touch) noexcept {
   const ConvexShape& shape = moving.shape;
-  const Corners corner = placed(moving, triangle, s);
+  const Corners corner = placed(moving, triangle, touch.s);
   const Penetration found =
-      s > 0 ? shape.hull->penetration(shape.hull->point, corner, moving.doubt, &moving.direction)
+      touch.s > 0 ? shape.hull->penetration(shape.hull->point, corner, moving.doubt, &moving.direction)
             : penetration(shape, corner, moving.doubt);
-  return {moving.center_at(s) + found.point, found.normal, found.feature,
-          certain_by(moving, triangle, s, nearness(moving, corner), found.normal)};
+  return {moving.center_at(touch.s) + found.point, found.normal, found.feature,
+          certain_by(moving, triangle, touch, nearness(moving, corner, touch.core), found.normal)};
 }
 
 MovingShape::Contact contact_of_core(const MovingShape& moving, const Triangle& triangle,
-                                     double s) noexcept {
-  const Corners corner = placed(moving, triangle, s);
-  const ClosestPoints at = contact_points(moving.shape, corner);
+                                     const MovingShape::Touch& touch) noexcept {
+  const Corners corner = placed(moving, triangle, touch.s);
+  const ClosestPoints at = contact_points(moving.shape, corner, touch.core);
   const Penetration found = penetration_of_core(moving.shape, corner, moving.doubt, at);
-  return {moving.center_at(s) + found.point, found.normal, found.feature,
-          certain_by(moving, triangle, s, nearness_of(at), found.normal)};
+  return {moving.center_at(touch.s) + found.point, found.normal, found.feature,
+          certain_by(moving, triangle, touch, nearness_of(at), found.normal)};
 }
 
 }  // namespace
@@ -399,9 +301,12 @@ double MovingShape::doubt_of(double near, double far) noexcept {
   return (16 * near + 4 * far) * kRoundoffF64;
 }
 
-std::optional<double> MovingShape::first_touch(const Triangle& triangle, double from,
-                                               double to) const noexcept {
-  if (is_box()) return first_touch_of_box(*this, triangle, from, to);
+std::optional<MovingShape::Touch> MovingShape::first_touch(const Triangle& triangle, double from,
+                                                           double to) const noexcept {
+  if (is_box()) {
+    const std::optional<double> s = first_touch_of_box(*this, triangle, from, to);
+    return s ? std::optional(Touch{*s}) : std::nullopt;
+  }
   return shape.hull != nullptr ? first_touch_by_distance(*this, triangle, from, to)
                                : first_touch_of_core(*this, triangle, from, to);
 }
@@ -422,10 +327,11 @@ std::optional<Penetration> MovingShape::contact_at_rest(const Triangle& triangle
       points ? contact_points(shape, corner, *points) : contact_points(shape, corner));
 }
 
-MovingShape::Contact MovingShape::contact_at(const Triangle& triangle, double s) const noexcept {
-  if (is_box()) return contact_of_box(*this, triangle, s);
-  return shape.hull != nullptr ? contact_of_hull(*this, triangle, s)
-                               : contact_of_core(*this, triangle, s);
+MovingShape::Contact MovingShape::contact_at(const Triangle& triangle,
+                                             const Touch& touch) const noexcept {
+  if (is_box()) return contact_of_box(*this, triangle, touch.s);
+  return shape.hull != nullptr ? contact_of_hull(*this, triangle, touch)
+                               : contact_of_core(*this, triangle, touch);
 }
 
 }  // namespace boxtree

@@ -35,11 +35,15 @@ struct MovingShape {
 
   [[nodiscard]] bool is_box() const noexcept { return shape.axes == 3 && shape.hull == nullptr; }
 
+  struct Touch {
+    double s;
+    CoreGuess core = CoreGuess::kNone;  // of a capsule: what of it seems to touch
+  };
   /// A lower bound of the first s in [from, to] at which the shape touches the triangle; nothing if
   /// it does not, or passes farther away than some `doubt`. Precondition: it does not touch before
   /// `from`, unless `from` is 0.
-  [[nodiscard]] std::optional<double> first_touch(const Triangle& triangle, double from,
-                                                  double to) const noexcept;
+  [[nodiscard]] std::optional<Touch> first_touch(const Triangle& triangle, double from,
+                                                 double to) const noexcept;
   /// Where a shape that stays where it is touches the triangle; nothing exactly where first_touch()
   /// is nothing. Precondition: `direction` is zero.
   [[nodiscard]] std::optional<Penetration> contact_at_rest(const Triangle& triangle) const noexcept;
@@ -50,8 +54,8 @@ struct MovingShape {
     TrianglePart feature;
     double by;  // an s that is not below the first at which they touch
   };
-  /// Where they touch at `s`, a result of first_touch().
-  [[nodiscard]] Contact contact_at(const Triangle& triangle, double s) const noexcept;
+  /// Where they touch at a result of first_touch().
+  [[nodiscard]] Contact contact_at(const Triangle& triangle, const Touch& touch) const noexcept;
 };
 
 }  // namespace boxtree

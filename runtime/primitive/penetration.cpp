@@ -25,20 +25,25 @@ class LeastDepth {
   LeastDepth(const ConvexShape& shape, const Corners& corner, double doubt) noexcept
       : shape_(shape), corner_(corner), error_(4 * doubt + kDepthError * max_abs_of(corner)) {}
 
-  // Along a vector of length 1, either way, or 0: then it is none.
-  void try_axis(const Eigen::Vector3d& axis) noexcept {
+  // Along a vector of length 1, either way, or 0: then it is none. A call, for its size: most
+  // contacts try one.
+  [[gnu::noinline]] void try_axis(const Eigen::Vector3d& axis) noexcept {
     if (axis.isZero(0)) return;
     const auto [low, high, half] = project(axis, shape_, corner_);
-    try_projection(axis, low, high, half);
-  }
-  void try_projection(const Eigen::Vector3d& axis, double low, double high, double half) noexcept {
     // Beyond the triangle's high side, or its low one.
-    if (high + half < depth - error_) {
-      depth = high + half;
+    try_depths(axis, high + half, half - low);
+  }
+  // Whether it leaves soonest along an axis, `along` it or `against` it.
+  [[nodiscard]] bool is_deeper(double along, double against) const noexcept {
+    return std::min(along, against) < depth - error_;
+  }
+  void try_depths(const Eigen::Vector3d& axis, double along, double against) noexcept {
+    if (along < depth - error_) {
+      depth = along;
       normal = axis;
     }
-    if (half - low < depth - error_) {
-      depth = half - low;
+    if (against < depth - error_) {
+      depth = against;
       normal = -axis;
     }
   }
@@ -81,18 +86,19 @@ class LeastDepth {
 };
 
 // Nothing where an axis shows a gap of more than `apart`.
-std::optional<Penetration> of_box(const ConvexShape& box, const BoxAxes& axes,
-                                  const Corners& corner, double doubt, double apart) noexcept {
+std::optional<Penetration> of_box(const ConvexShape& box, BoxAxes& axes, const Corners& corner,
+                                  double doubt, double apart) noexcept {
   LeastDepth least(box, corner, doubt);
   least.try_axis(unit_normal({corner}));
   const double depth_of_face = least.depth;
-  bool may_touch = true;
-  axes.visit([&](const BoxAxis& axis) {
-    may_touch = axis.low - axis.half <= apart && axis.high + axis.half >= -apart;
-    if (may_touch) least.try_projection(axis.along, axis.low, axis.high, axis.half);
-    return may_touch;
-  });
-  if (!may_touch) return std::nullopt;
+  for (std::size_t group = 0; group < BoxAxes::kGroups; ++group) {
+    const BoxOverlaps overlaps = axes.overlaps(group);
+    for (std::size_t k = 0; k < BoxAxes::count(group); ++k) {
+      const double first = overlaps.first[k], last = overlaps.last[k];
+      if (!(first <= apart && last >= -apart)) return std::nullopt;
+      if (least.is_deeper(last, -first)) least.try_depths(axes.axis(group, k), last, -first);
+    }
+  }
   // Any but that of the face is in the frame of the box.
   if (least.depth != depth_of_face) least.normal = from_frame_of(box, least.normal);
   return Penetration{point_inside_box(box, least.error(), corner), least.normal,
@@ -109,15 +115,15 @@ Penetration penetration(const ConvexShape& shape, const Corners& corner, double 
   }
   if (shape.axes == 3) {
     const Triangle triangle{corner};
-    return *of_box(shape, BoxAxes(shape, triangle, corner), corner, doubt,
-                   std::numeric_limits<double>::infinity());
+    BoxAxes axes(shape, triangle, corner, Eigen::Vector3d::Zero());
+    return *of_box(shape, axes, corner, doubt, std::numeric_limits<double>::infinity());
   }
   return penetration_of_core(shape, corner, doubt, contact_points(shape, corner));
 }
 
 std::optional<Penetration> box_penetration(const ConvexShape& box, const Triangle& triangle,
                                            const Corners& corner, double doubt) noexcept {
-  const BoxAxes axes(box, triangle, corner);
+  BoxAxes axes(box, triangle, corner, Eigen::Vector3d::Zero());
   return of_box(box, axes, corner, doubt, axes.error() + 2 * doubt);
 }
 

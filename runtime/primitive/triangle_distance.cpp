@@ -50,8 +50,13 @@ double unit_quotient(double numerator, double denominator) {
 }
 
 struct Search {
-  Search(const Corners& p_corners, const Corners& q_corners) noexcept
-      : p(p_corners), q(q_corners), p_edge(edges_of(p)), q_edge(edges_of(q)) {
+  // `is_segment`: p has one edge, which is all of it.
+  Search(const Corners& p_corners, const Corners& q_corners, bool is_segment_) noexcept
+      : p(p_corners),
+        q(q_corners),
+        is_segment(is_segment_),
+        p_edge(edges_of(p)),
+        q_edge(edges_of(q)) {
     max_abs = std::max(max_abs_of(p), max_abs_of(q));
     doubt = kPlaneError * max_abs * max_abs;
   }
@@ -92,7 +97,7 @@ struct Search {
     }
     const Eigen::Vector3d on_q = along(b, f, q[(j + 1) % 3], t);
     if (!consider(on_p, on_q)) return false;
-    return dot(p[(i + 2) % 3] - on_p, between) <= -doubt &&
+    return (is_segment || dot(p[(i + 2) % 3] - on_p, between) <= -doubt) &&
            dot(q[(j + 2) % 3] - on_q, between) >= doubt;
   }
 
@@ -164,6 +169,7 @@ struct Search {
 
   const Corners& p;
   const Corners& q;
+  bool is_segment;
   Corners p_edge;
   Corners q_edge;
   double max_abs;
@@ -189,6 +195,10 @@ TriangleDistance distance_found(Search& search) noexcept {
   return {best.lower, search.upper(), search.first, search.second, best.direction};
 }
 
+TriangleDistance points_found(const Search& search) noexcept {
+  return {0, search.upper(), search.first, search.second, Eigen::Vector3d::Zero()};
+}
+
 [[gnu::noinline]] void search_from_segment(Search& search) noexcept {
   if (!search.try_all_edges(1)) search.try_face(search.q, search.q_edge, search.p, false);
 }
@@ -196,7 +206,7 @@ TriangleDistance distance_found(Search& search) noexcept {
 }  // namespace
 
 TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcept {
-  Search search(p.corner, q.corner);
+  Search search(p.corner, q.corner, false);
   if (!search.try_all_edges(3)) {
     search.try_face(p.corner, search.p_edge, q.corner, true);
     search.try_face(q.corner, search.q_edge, p.corner, false);
@@ -207,7 +217,7 @@ TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcep
 TriangleDistance segment_distance(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                   const Triangle& q) noexcept {
   const Corners segment{from, to, to};
-  Search search(segment, q.corner);
+  Search search(segment, q.corner, true);
   search_from_segment(search);
   return distance_found(search);
 }
@@ -215,9 +225,21 @@ TriangleDistance segment_distance(const Eigen::Vector3d& from, const Eigen::Vect
 TriangleDistance segment_closest_points(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                         const Triangle& q) noexcept {
   const Corners segment{from, to, to};
-  Search search(segment, q.corner);
+  Search search(segment, q.corner, true);
   search_from_segment(search);
-  return {0, search.upper(), search.first, search.second, Eigen::Vector3d::Zero()};
+  return points_found(search);
+}
+
+TriangleDistance closest_points_of_part(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                        const Triangle& q, std::size_t part) noexcept {
+  const Corners segment{from, to, to};
+  Search search(segment, q.corner, true);
+  if (part < 2) {
+    search.consider(segment[part], closest_point_on_triangle(segment[part], q));
+  } else {
+    search.try_edges(0, part - 2);
+  }
+  return points_found(search);
 }
 
 }  // namespace boxtree

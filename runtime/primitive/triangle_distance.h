@@ -34,4 +34,10 @@ struct TriangleDistance {
                                                       const Eigen::Vector3d& to,
                                                       const Triangle& q) noexcept;
 
+/// Likewise, of an end of the segment (the first or the last) or of the segment and edge `part` - 2
+/// of the triangle: an upper bound that is the distance if the closest points are there.
+[[nodiscard]] TriangleDistance closest_points_of_part(const Eigen::Vector3d& from,
+                                                      const Eigen::Vector3d& to, const Triangle& q,
+                                                      std::size_t part) noexcept;
+
 }  // namespace boxtree

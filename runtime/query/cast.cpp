@@ -12,6 +12,44 @@
 #include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
+namespace {
+
+double near_of(const BoundTree& tree, const Eigen::Vector3d& extent) noexcept {
+  return RaySlab::power_above(tree.largest_abs()) + 2 * largest_magnitude(extent);
+}
+
+}  // namespace
+
+CastQuery::CastQuery(const BoundTree& queried, const Path& path, Wanted wanted_touches,
+                     const Visitor* all, WalkBound& bound, const FaceOptions* face_options) noexcept
+    : CastQuery(queried, path, path.shape.half_extents(), wanted_touches, all, bound,
+                face_options) {}
+
+CastQuery::CastQuery(const BoundTree& queried, const Path& path, const Eigen::Vector3d& half,
+                     Wanted wanted_touches, const Visitor* all, WalkBound& bound,
+                     const FaceOptions* face_options) noexcept
+    : RayInTree(queried, path.line, exponent_of(largest_magnitude(path.line.direction)),
+                near_of(queried, half)),
+      tree(queried),
+      nodes(bound),
+      shape(path.shape),
+      extent(half),
+      near(near_of(queried, half)),
+      placed(path.placed),
+      is_moving(path.is_moving),
+      moving(placed != nullptr ? placed->moving : moving_in_tree()),
+      wanted(wanted_touches),
+      visitor(all),
+      faces(queried, face_options) {
+  slab.widen(AxisLanes(extent));
+}
+
+MovingShape CastQuery::moving_in_tree() const noexcept {
+  MovingShape out{shape, is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
+                  MovingShape::doubt_of(near, origin_max_abs) + shape.error};
+  out.shape.center = origin.vector();
+  return out;
+}
 
 void CastQuery::test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) {
   // The bounds are a lower bound of the touch, too: beginning there makes it agree with every key
@@ -21,18 +59,26 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index, std::ui
   const double from = std::max(interval.enter, 0.0);
   if (from > t_max) return;
   CastCandidate found;
-  set_triangle(triangle, face_index, half, found);
-  if (!admits_side(found)) return;
-  if (wanted == Wanted::kContacts) {
-    const std::optional<Penetration> contact = moving.contact_at_rest(found.triangle);
-    if (!contact) return;
-    found.at = *contact;
-    found.face_normal = face_normal(found, contact->normal);
-  } else {
+  const auto touches = [&](const Triangle& compared) {
     const double scale = scale_of_parameters();
-    const std::optional<double> s = moving.first_touch(found.triangle, from * scale, t_max * scale);
-    if (!s) return;
-    found.s = *s;
+    const auto touch = moving.first_touch(compared, from * scale, t_max * scale);
+    if (touch) found.touch = *touch;
+    return touch.has_value();
+  };
+  // Many do not touch, or too late: a triangle that need not be known for more is copied later.
+  const bool is_compared = placed == nullptr && wanted != Wanted::kContacts && !wants_a_side();
+  if (is_compared && !touches(triangle)) return;
+  set_triangle(triangle, face_index, half, found);
+  if (!is_compared) {
+    if (!admits_side(found)) return;
+    if (wanted == Wanted::kContacts) {
+      const std::optional<Penetration> contact = moving.contact_at_rest(found.triangle);
+      if (!contact) return;
+      found.at = *contact;
+      found.face_normal = face_normal(found, contact->normal);
+    } else if (!touches(found.triangle)) {
+      return;
+    }
   }
   take(found);
 }
@@ -64,17 +110,17 @@ void CastQuery::take(CastCandidate& found) {
     return;
   }
   if (faces.has_filter() && !faces.name_wanted(tree, found.original, found.face)) return;
-  if (best.is_hit && found.s == best.s) {
+  if (best.is_hit && found.touch.s == best.touch.s) {
     name(tree, found.face);
     name(tree, best.face);
     if (!comes_before(tree, found.face, found.half, best.face, best.half)) return;
   }
   best = found;
-  t_max = found.s / scale;
+  t_max = found.touch.s / scale;
 }
 
 bool CastQuery::admits_side(const CastCandidate& found) const noexcept {
-  if (faces.options == nullptr || faces.options->back_faces == BackFaces::kHit) return true;
+  if (!wants_a_side()) return true;
   const bool is_back = dot(front_normal(found), moving.direction) > 0;
   return is_back == (faces.options->back_faces == BackFaces::kOnly);
 }
@@ -100,9 +146,9 @@ CastLine::CastLine(const ShapeInTree& shape, const Motion& motion) noexcept {
 CastHit hit_of(const BoundTree& tree, const MovingShape& moving, const CastCandidate& found,
                const Ray& line, int exponent, const Frame& frame) noexcept {
   CastHit hit;
-  hit.initially_touching = found.s == 0;
-  const MovingShape::Contact contact = moving.contact_at(found.triangle, found.s);
-  hit.t_lower = parameter_of(line, found.s, exponent);
+  hit.initially_touching = found.touch.s == 0;
+  const MovingShape::Contact contact = moving.contact_at(found.triangle, found.touch);
+  hit.t_lower = parameter_of(line, found.touch.s, exponent);
   hit.t = hit.initially_touching ? 0 : parameter_of(line, contact.by, exponent);
   hit.face = found.face;
   hit.triangle = found.half;

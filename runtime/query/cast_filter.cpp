@@ -14,7 +14,6 @@ CastFilter::CastFilter(const CastQuery& query) noexcept
   widen(query.extent);
   const ConvexShape& shape = query.shape;
   radius = float_above(shape.radius);
-  outer_radius = float_above(shape.outer_radius());
   for (std::size_t k = 0; k < 3; ++k) {
     direction[k] = query.is_moving ? static_cast<float>(query.direction[k]) : 0.0f;
   }

@@ -42,7 +42,6 @@ struct CastFilter : RayBoxFilter {
   explicit CastFilter(const CastQuery& query) noexcept;
 
   float radius;
-  float outer_radius;  // of a ball that holds the shape
   float direction[3];
   ConvexAxes core;
   AxisMotion motion[3];

@@ -30,11 +30,11 @@ struct CastLine {
   const char* invalid;  // the field that is not valid, or null; then the rest is not, either
 };
 
-/// A touch: `s`, a lower bound, in parameters of MovingShape, and the triangle where it is compared
-/// with the shape, unspecified where the contact is known (kContacts).
+/// A touch: at `touch`, in parameters of MovingShape, and the triangle where it is compared with the
+/// shape, unspecified where the contact is known (kContacts).
 struct CastCandidate {
   bool is_hit = false;  // if false, the rest is unspecified
-  double s = 0;
+  MovingShape::Touch touch{0};
   FaceRef face;
   std::uint32_t original = 0;  // the face of the tree's order that it is, or is a copy of
   std::uint32_t half = 0;
@@ -81,22 +81,7 @@ struct CastQuery : RayInTree {
 
   /// `all`: the visitor of kAll or kContacts, or null. `face_options`: null: every face may be hit.
   CastQuery(const BoundTree& queried, const Path& path, Wanted wanted_touches, const Visitor* all,
-            WalkBound& bound, const FaceOptions* face_options = nullptr) noexcept
-      : RayInTree(queried, path.line, exponent_of(largest_magnitude(path.line.direction)),
-                  near_of(queried, path.shape)),
-        tree(queried),
-        nodes(bound),
-        shape(path.shape),
-        extent(shape.half_extents()),
-        near(near_of(queried, shape)),
-        placed(path.placed),
-        is_moving(path.is_moving),
-        moving(placed != nullptr ? placed->moving : moving_in_tree()),
-        wanted(wanted_touches),
-        visitor(all),
-        faces(queried, face_options) {
-    slab = slab.widened(AxisLanes(extent));
-  }
+            WalkBound& bound, const FaceOptions* face_options = nullptr) noexcept;
 
   /// Walks the tree; `best` or the visitor has the answers then. Errors: those of corrupt bytes and
   /// limits.
@@ -145,23 +130,24 @@ struct CastQuery : RayInTree {
   TriangleBatch batch;
 
  private:
+  // `half`: the extent of the shape.
+  CastQuery(const BoundTree& queried, const Path& path, const Eigen::Vector3d& half,
+            Wanted wanted_touches, const Visitor* all, WalkBound& bound,
+            const FaceOptions* face_options) noexcept;
+
   // Of `moving`, over that of the line.
   [[nodiscard]] double scale_of_parameters() const noexcept {
     return placed == nullptr ? 1 : placed->scale;
   }
 
+  // Whether only one side of a triangle may be hit.
+  [[nodiscard]] bool wants_a_side() const noexcept {
+    return faces.options != nullptr && faces.options->back_faces != BackFaces::kHit;
+  }
   // Whether a triangle may be hit, from the side from which it is met.
   [[nodiscard]] bool admits_side(const CastCandidate& found) const noexcept;
 
-  [[nodiscard]] static double near_of(const BoundTree& tree, const ConvexShape& shape) noexcept {
-    return RaySlab::power_above(tree.largest_abs()) + 2 * largest_magnitude(shape.half_extents());
-  }
-  [[nodiscard]] MovingShape moving_in_tree() const noexcept {
-    MovingShape out{shape, is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
-                    MovingShape::doubt_of(near, origin_max_abs) + shape.error};
-    out.shape.center = origin.vector();
-    return out;
-  }
+  [[nodiscard]] MovingShape moving_in_tree() const noexcept;
 };
 
 /// What a caller is told of a touch in a tree, but for the id of its face. `line`: whose t is told,

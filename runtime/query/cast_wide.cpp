@@ -63,7 +63,7 @@ class CastLeaves {
     if (shape_.axes() == 3) {
       boxes.cut_by_axes(interval);
     } else {
-      interval.cut(boxes.gap_of_ball());
+      interval.cut(boxes.gap_along_way());
     }
     enter = hn::Add(enter, interval.enter());
     return bits_of(hn::And(interval.is_left(), hn::Le(enter, hn::Set(Floats(), bound_))));
@@ -177,18 +177,18 @@ class CastLeaves {
       s = hn::Add(start, interval.enter());
       lanes &= bits_of(hn::And(interval.is_left(), hn::Le(s, last)));
     };
-    if (shape_.axes() != 0) {
+    // What is round is not worth it: the line to the core tells more than all of these.
+    const bool is_round = filter_.radius > 0;
+    if (shape_.axes() == 3 || (shape_.axes() != 0 && !is_round)) {
       const MovingTriangles triangles(filter_, leaf_, group, part, start);
       MovingInterval interval;
       triangles.cut_by_faces(interval);
       cut(interval);
       if (lanes == 0) return 0;
-      if (shape_.axes() != 0) {
-        triangles.cut_by_edges(interval);
-        cut(interval);
-      }
+      triangles.cut_by_edges(interval);
+      cut(interval);
     }
-    if (filter_.radius > 0) {
+    if (is_round) {
       if (query_.best.is_hit) lanes = touched_before_bound(group, part, lanes);
       if (lanes != 0) lanes = advance_round(group, part, lanes, s, last);
     }

@@ -118,7 +118,6 @@ class MovingFloats {
     return filter_.core.axis[i][k] < 0;
   }
   [[nodiscard]] const AxisMotion& motion(std::uint32_t i) const { return filter_.motion[i]; }
-  [[nodiscard]] float outer_radius() const { return filter_.outer_radius; }
   /// By how much a projection on a vector is off, for each unit of the sum of its magnitudes.
   [[nodiscard]] float error() const { return 3 * filter_.error; }
 
@@ -162,18 +161,18 @@ class MovingBoxes {
     }
   }
 
-  /// Of the vector to each box from the center of a ball that holds the shape.
-  [[nodiscard]] HWY_INLINE Gap gap_of_ball() const {
+  /// Of the vector to each box from the center of the shape.
+  [[nodiscard]] HWY_INLINE Gap gap_along_way() const {
     const Floats d;
     const FloatVector zero = hn::Zero(d);
     Vector3 way;
     for (std::size_t k = 0; k < 3; ++k) {
       way.at[k] = hn::Add(hn::Max(zero, low_.at[k]), hn::Min(zero, high_.at[k]));
     }
-    const FloatVector squared = dot(way, way), size = size_of(way);
-    const FloatVector reach = hn::MulAdd(hn::Sqrt(squared), hn::Set(d, shape_.outer_radius()),
-                                         hn::Mul(size, hn::Set(d, shape_.error())));
-    return {hn::Sub(squared, reach), hn::Set(d, std::numeric_limits<float>::infinity()),
+    const FloatVector size = size_of(way);
+    const FloatVector reach =
+        hn::MulAdd(size, hn::Set(d, shape_.error()), shape_.reach(way, size));
+    return {hn::Sub(dot(way, way), reach), hn::Set(d, std::numeric_limits<float>::infinity()),
             dot(way, shape_.direction()), size};
   }
 
@@ -249,9 +248,9 @@ class MovingTriangles {
   /// `offset`: from the center to the point of the core at which the search begins, and then to
   /// that which it finds.
   [[nodiscard]] HWY_NOINLINE Vector3 way_from_core(Vector3& offset) const {
-    if (shape_.axes() == 0) return way_from(offset);
-    const Floats d;
     const Vector3 way = way_from(offset);
+    if (shape_.axes() == 0) return way;
+    const Floats d;
     // To the point of the core that is closest to where that way ends.
     const Vector3 end{{hn::Add(offset.at[0], way.at[0]), hn::Add(offset.at[1], way.at[1]),
                        hn::Add(offset.at[2], way.at[2])}};

@@ -58,15 +58,11 @@ class RaySlab {
   RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_abs) noexcept
       : RaySlab(AxisLanes(origin), largest_magnitude(origin), AxisLanes(direction), max_abs) {}
 
-  /// The same for boxes that are widened by `extent` on each side: for a shape of that half extent
+  /// From now on, boxes are widened by `extent` on each side: for a shape of that half extent
   /// around the ray's point. Precondition: `max_abs` holds for widened boxes.
-  [[nodiscard]] RaySlab widened(const AxisLanes& extent) const noexcept {
-    RaySlab slab = *this;
-    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
-      slab.low_origin_[k] += extent[k];
-      slab.high_origin_[k] -= extent[k];
-    }
-    return slab;
+  void widen(const AxisLanes& extent) noexcept {
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) low_origin_[k] += extent[k];
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) high_origin_[k] -= extent[k];
   }
 
   template <class S>

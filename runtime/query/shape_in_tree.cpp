@@ -16,11 +16,10 @@ bool is_unsigned(double x) noexcept {
 }
 
 // Squares and products of coordinates must not overflow.
-ShapeInTree checked(ShapeInTree out) noexcept {
+void check_size(ShapeInTree& out) noexcept {
   if (out.invalid == nullptr && !(largest_magnitude(out.shape.half_extents()) <= kMaxCoordinate)) {
     out.invalid = out.shape.axes == 3 ? "half_extents" : "radius";
   }
-  return out;
 }
 
 }  // namespace
@@ -31,7 +30,8 @@ ShapeInTree in_tree(const Frame& frame, const Sphere& sphere) noexcept {
   out.shape.radius = sphere.radius * frame.inverse_scale;
   if (!is_within_range(frame.to_tree(sphere.center))) out.invalid = "center";
   if (!is_unsigned(sphere.radius)) out.invalid = "radius";
-  return checked(out);
+  check_size(out);
+  return out;
 }
 
 ShapeInTree in_tree(const Frame& frame, const Capsule& capsule) noexcept {
@@ -51,7 +51,8 @@ ShapeInTree in_tree(const Frame& frame, const Capsule& capsule) noexcept {
   out.shape.axis[0] = end / 2 - start / 2;
   out.shape.half[0] = 1;
   out.shape.radius = capsule.radius * frame.inverse_scale;
-  return checked(out);
+  check_size(out);
+  return out;
 }
 
 ShapeInTree in_tree(const Frame& frame, const OrientedBox& box) noexcept {
@@ -75,7 +76,8 @@ ShapeInTree in_tree(const Frame& frame, const OrientedBox& box) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     out.shape.half[k] = box.half_extents[static_cast<Eigen::Index>(k)] * frame.inverse_scale;
   }
-  return checked(out);
+  check_size(out);
+  return out;
 }
 
 }  // namespace boxtree

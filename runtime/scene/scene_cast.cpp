@@ -63,7 +63,7 @@ struct SceneCastQuery : LineInScene {
     if (!query.best.is_hit || error != Errc::kOk) return !is_done();
     CastCandidate& found = query.best;
     name(tree, found.face);
-    if (best.is_hit && found.s == best.s &&
+    if (best.is_hit && found.touch.s == best.touch.s &&
         !admission.scene.comes_first(placed.id, found.face, best_id, best.face)) {
       return true;
     }
@@ -72,7 +72,7 @@ struct SceneCastQuery : LineInScene {
     best_instance = instance;
     best_tree = &tree;
     best_moving = query.moving;
-    line.t_max = found.s;
+    line.t_max = found.touch.s;
     return !is_done();
   }
 

@@ -29,8 +29,9 @@ namespace boxtree {
     const BoundScene& scene, const Ray& line, double max_abs,
     const Eigen::Vector3d& extent = Eigen::Vector3d::Zero()) noexcept {
   const Eigen::Vector3d origin = scene.to_frame(line.origin);
-  const RaySlab slab(origin, line.direction, max_abs);
-  return {origin, line.direction, max_abs, slab.widened(AxisLanes(extent)), line.t_min, extent};
+  RaySlab slab(origin, line.direction, max_abs);
+  slab.widen(AxisLanes(extent));
+  return {origin, line.direction, max_abs, slab, line.t_min, extent};
 }
 
 /// A line of the world in units of the scene, with a direction whose largest component is in

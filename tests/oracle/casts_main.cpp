@@ -250,16 +250,16 @@ void check(const Case& drawn, Draw& draw, Tally& tally) {
   const LongTriangle triangle = test::long_triangle(drawn.triangle);
   const test::BoundedTriangle bounded(triangle);
   ++tally.cases;
-  const std::optional<double> s = moving.first_touch(drawn.triangle, 0, to);
-  if (!s) {
+  const std::optional<MovingShape::Touch> touch = moving.first_touch(drawn.triangle, 0, to);
+  if (!touch) {
     tally.missed += test::touches_between(shape, direction, 0, to, triangle) ? 1u : 0u;
     return;
   }
   ++tally.touches;
-  const MovingShape::Contact contact = moving.contact_at(drawn.triangle, *s);
-  if (*s > 0) {
+  const MovingShape::Contact contact = moving.contact_at(drawn.triangle, *touch);
+  if (touch->s > 0) {
     tally.early +=
-        touches_before(shape, direction, *s, bounded, contact.normal.cast<long double>(), size);
+        touches_before(shape, direction, touch->s, bounded, contact.normal.cast<long double>(), size);
   }
   // At that time, or before.
   long double beyond =
@@ -270,7 +270,7 @@ void check(const Case& drawn, Draw& draw, Tally& tally) {
     tally.farthest = std::max(tally.farthest, beyond / size * 0x1p53L);
   }
   tally.invented += beyond > allowed;
-  if (*s > 0) return;
+  if (touch->s > 0) return;
   ++tally.at_start;
   MovingShape at_rest = moving;
   at_rest.direction = Eigen::Vector3d::Zero();
