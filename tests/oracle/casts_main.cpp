@@ -258,14 +258,16 @@ void check(const Case& drawn, Draw& draw, Tally& tally) {
   ++tally.touches;
   const MovingShape::Contact contact = moving.contact_at(drawn.triangle, *touch);
   if (touch->s > 0) {
-    tally.early +=
-        touches_before(shape, direction, touch->s, bounded, contact.normal.cast<long double>(), size);
+    tally.early += touches_before(shape, direction, touch->s, bounded,
+                                  contact.normal.cast<long double>(), size);
   }
   // At that time, or before.
   long double beyond =
       test::distance(shape, LongVector(contact.by * direction), triangle) - shape.radius;
   if (beyond / size * 0x1p53L > tally.farthest) {
-    const long double least = test::least_distance(shape, direction, contact.by, triangle);
+    // From where nothing has touched yet: steps over all of the way would not resolve its end.
+    const long double least =
+        test::least_distance(shape, direction, touch->s, contact.by, triangle);
     beyond = least - shape.radius;
     tally.farthest = std::max(tally.farthest, beyond / size * 0x1p53L);
   }
