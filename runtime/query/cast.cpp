@@ -100,6 +100,15 @@ void CastQuery::set_triangle(const Triangle& triangle, std::uint32_t face_index,
   found.inactive = placed->inactive;
 }
 
+void CastQuery::take_face(std::uint32_t face_index, std::uint32_t half) {
+  CastCandidate found;
+  found.is_hit = true;
+  found.face = {kNoFaceId, face_index};
+  found.original = face_index;
+  found.half = half;
+  take(found);
+}
+
 void CastQuery::take(CastCandidate& found) {
   const double scale = scale_of_parameters();
   if (visitor != nullptr) {

@@ -45,6 +45,9 @@ struct CastFilter : RayBoxFilter {
   float direction[3];
   ConvexAxes core;
   AxisMotion motion[3];
+  // See InnerShape, rounded inward; unspecified unless faces alone are wanted. `inner_radius` is 0
+  // for a box, and negative where nothing is inside.
+  float inner_radius, inner_ratio, inner_less;
 
  private:
   [[nodiscard]] AxisMotion motion_along(const float (&v)[3]) const noexcept;

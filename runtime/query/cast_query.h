@@ -30,8 +30,9 @@ struct CastLine {
   const char* invalid;  // the field that is not valid, or null; then the rest is not, either
 };
 
-/// A touch: at `touch`, in parameters of MovingShape, and the triangle where it is compared with the
-/// shape, unspecified where the contact is known (kContacts).
+/// A touch: at `touch`, in parameters of MovingShape, and the triangle where it is compared with
+/// the shape, unspecified where the contact is known (kContacts) or the face alone matters
+/// (kFaces).
 struct CastCandidate {
   bool is_hit = false;  // if false, the rest is unspecified
   MovingShape::Touch touch{0};
@@ -47,6 +48,15 @@ struct CastCandidate {
   Eigen::Vector3d face_normal;  // likewise: see face_normal()
 };
 
+/// What of the space of a tree is surely inside a shape: what is not farther than `radius` from the
+/// core of Path::shape; of a box, where that has none, what is not farther than r from a core that
+/// is r * ratio + less smaller on all sides.
+struct InnerShape {
+  double radius;
+  double ratio = 1;
+  double less = 0;
+};
+
 /// A cast on a tree that is placed by a pose: triangles are compared where it places them.
 struct PlacedCast {
   AffineMap to_world;      // from tree space
@@ -54,6 +64,7 @@ struct PlacedCast {
   MovingShape moving;      // in the world
   double scale;            // s of `moving` = it * s of the query in tree space; a power of two
   InactiveEdges inactive;  // see BoundScene::Placed
+  InnerShape inside;       // `radius` is negative where nothing surely is
 
   [[nodiscard]] Triangle apply(const Triangle& triangle) const noexcept {
     Triangle placed = to_world.apply(triangle);
@@ -69,7 +80,9 @@ struct CastQuery : RayInTree {
   /// MovingShape that is still of interest, or a negative number to stop.
   using Visitor = FunctionRef<double(const CastQuery& query, const CastCandidate& found)>;
 
-  enum class Wanted : std::uint8_t { kClosest, kAny, kAll, kContacts };
+  /// kFaces, kContacts: of a shape that stays where it is; kFaces: all, where the faces alone
+  /// matter.
+  enum class Wanted : std::uint8_t { kClosest, kAny, kAll, kFaces, kContacts };
 
   /// What of the shape and its way is in tree space.
   struct Path {
@@ -79,7 +92,8 @@ struct CastQuery : RayInTree {
     const PlacedCast* placed = nullptr;  // null: triangles are compared in tree space
   };
 
-  /// `all`: the visitor of kAll or kContacts, or null. `face_options`: null: every face may be hit.
+  /// `all`: the visitor of all that is wanted, or null. `face_options`: null: every face may be
+  /// hit.
   CastQuery(const BoundTree& queried, const Path& path, Wanted wanted_touches, const Visitor* all,
             WalkBound& bound, const FaceOptions* face_options = nullptr) noexcept;
 
@@ -111,6 +125,8 @@ struct CastQuery : RayInTree {
                     CastCandidate& found) const noexcept;
   /// Takes a touch, which `found` holds.
   void take(CastCandidate& found);
+  /// The same of kFaces: of a triangle of which nothing else is known.
+  void take_face(std::uint32_t face_index, std::uint32_t half);
 
   const BoundTree& tree;
   WalkBound& nodes;

@@ -31,7 +31,11 @@ Errc walk_cast(const BoundTree& tree, CastQuery& query) {
 class CastLeaves {
  public:
   CastLeaves(const BoundTree& tree, CastQuery& query, const CastFilter& filter)
-      : query_(query), filter_(filter), shape_(filter), leaf_(tree) {
+      : query_(query),
+        filter_(filter),
+        shape_(filter),
+        leaf_(tree),
+        are_faces_wanted_(query.wanted == CastQuery::Wanted::kFaces && filter.inner_radius >= 0) {
     set_bound();
   }
 
@@ -88,11 +92,17 @@ class CastLeaves {
         hn::Store(leave, Floats(), last + part * kLanes);
       }
       near &= leaf_.lanes(group);
-      if (near != 0) near = advance(group, near, key, last);
+      const std::uint32_t sure = are_faces_wanted_ ? near & surely_touched(group) : 0;
+      if (near != sure) near = sure | advance(group, near & ~sure, key, last);
       while (near != 0) {
         const std::uint32_t i = take_smallest(near, key);
         if (key[i] > bound_) break;
         const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
+        if (((sure >> i) & 1u) != 0) {
+          query_.take_face(leaf_.face(lane), leaf_.half(lane));
+          if (query_.is_done()) return false;
+          continue;
+        }
         const double before = query_.t_max;
         if (!leaf_.with_triangle(
                 lane, [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
@@ -124,6 +134,31 @@ class CastLeaves {
     const Errc error = leaf_.error();
     if (finish(error) == error) query_.error = error;
     return false;
+  }
+
+  // Lanes of triangles that surely have a corner inside the shape.
+  HWY_NOINLINE std::uint32_t surely_touched(std::size_t group) const {
+    // More than coordinates less than 16 times as large as the largest that matter round by.
+    const float error = shape_.error() + leaf_.corner_error();
+    const Vector3 center = shape_.center_at(hn::Zero(Floats()));
+    std::uint32_t bits = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const FloatVector zero = hn::Zero(Floats());
+      FloatVector sum = zero;
+      std::uint32_t held = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        Vector3 corner;
+        for (std::size_t k = 0; k < 3; ++k) {
+          corner.at[k] = hn::Sub(leaf_.at(c, k, group, part), center.at[k]);
+          sum = hn::Add(sum, corner.at[k]);
+        }
+        held |= bits_of(shape_.hold(corner, error));
+      }
+      // A corner that is not finite, of corrupt bytes, is for the exact test to find.
+      held &= bits_of(hn::Eq(hn::Mul(sum, zero), zero));
+      bits |= held << (part * kLanes);
+    }
+    return bits;
   }
 
   void set_bound() {
@@ -244,6 +279,8 @@ class CastLeaves {
   const CastFilter& filter_;
   MovingFloats shape_;
   LeafFloats leaf_;
+  // Whether triangles that surely touch need not be known exactly.
+  const bool are_faces_wanted_;
 #if BOXTREE_FINDS_SPHERE_CONTACTS
   SphereContacts contacts_{query_};
 #endif

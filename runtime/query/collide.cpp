@@ -53,7 +53,7 @@ Result<Visit> visit_contacts_in(const BoundTree& tree, const ShapeInTree& shape,
 Result<Visit> visit_touched_faces_in(const BoundTree& tree, const ShapeInTree& shape,
                                      FaceVisitor visitor, const QueryLimits& limits) {
   VisitedFaces visited;
-  return visit_touched_by(tree, shape, limits, CastQuery::Wanted::kAll,
+  return visit_touched_by(tree, shape, limits, CastQuery::Wanted::kFaces,
                           [&](const CastQuery&, const CastCandidate& found) {
                             return !visited.is_new(found) || visitor(found.face);
                           });

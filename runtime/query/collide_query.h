@@ -17,7 +17,7 @@
 namespace boxtree {
 
 /// Calls visit(query, candidate) -> bool, whether to go on, with each triangle that is touched.
-/// `wanted`: kContacts, or kAll where the faces alone matter.
+/// `wanted`: kContacts or kFaces.
 template <class Visitor>
 Result<Visit> visit_touched(const BoundTree& tree, const CastQuery::Path& path,
                             CastQuery::Wanted wanted, QueryWork& work, const Visitor& visit) {

@@ -122,22 +122,40 @@ class MovingFloats {
   [[nodiscard]] float error() const { return 3 * filter_.error; }
 
   /// How far it reaches along a vector, times its length, and more than products lose that
-  /// underflow. `size`: the sum of magnitudes, no less than the length, where that has no square.
-  [[nodiscard]] HWY_INLINE FloatVector reach(const Vector3& v, FloatVector size) const {
-    constexpr float kLeastSquare = 0x1p-100f;
+  /// underflow.
+  [[nodiscard]] HWY_INLINE FloatVector reach(const Vector3& v, FloatVector length) const {
     constexpr float kUnderflow = 64 * std::numeric_limits<float>::min();
     const Floats d;
-    FloatVector reach = hn::Set(d, kUnderflow);
-    if (filter_.radius > 0) {
-      const FloatVector square = dot(v, v);
-      const FloatVector length =
-          hn::IfThenElse(hn::Gt(square, hn::Set(d, kLeastSquare)), hn::Sqrt(square), size);
-      reach = hn::MulAdd(length, hn::Set(d, filter_.radius), reach);
-    }
+    FloatVector reach = hn::MulAdd(length, hn::Set(d, filter_.radius), hn::Set(d, kUnderflow));
     for (std::uint32_t i = 0; i < axes(); ++i) {
       reach = hn::MulAdd(hn::Abs(dot(v, axis(i))), half(i), reach);
     }
     return reach;
+  }
+
+  /// Whether points are surely inside the shape at rest, whose faces alone are wanted. `error`: how
+  /// far their coordinates may be off, and more than the distance from the core rounds. Halves have
+  /// been rounded up.
+  [[nodiscard]] HWY_NOINLINE hn::Mask<Floats> hold(const Vector3& point, float error) const {
+    constexpr float kDown = static_cast<float>(1 - 8 * kRoundoffF32);
+    const Floats d;
+    const bool is_box = filter_.inner_radius == 0;
+    // What is found within 2 errors of the smaller core is within 4.
+    const float smaller = is_box ? 4 * error * filter_.inner_ratio + filter_.inner_less : 0;
+    float within = is_box ? 2 * error : filter_.inner_radius - 2 * error;
+    Vector3 rest = point;
+    for (std::uint32_t i = 0; i < axes(); ++i) {
+      const float half = filter_.core.half[i] * kDown - smaller;
+      if (!(half >= 0)) within = 0;
+      const Vector3 axis = this->axis(i);
+      const FloatVector along =
+          hn::Min(hn::Max(dot(point, axis), hn::Set(d, -half)), hn::Set(d, half));
+      for (std::size_t k = 0; k < 3; ++k) {
+        rest.at[k] = hn::NegMulAdd(along, axis.at[k], rest.at[k]);
+      }
+    }
+    within = std::max(within, 0.0f);
+    return hn::Lt(dot(rest, rest), hn::Set(d, within * within * kDown));
   }
 
  private:
@@ -169,10 +187,11 @@ class MovingBoxes {
     for (std::size_t k = 0; k < 3; ++k) {
       way.at[k] = hn::Add(hn::Max(zero, low_.at[k]), hn::Min(zero, high_.at[k]));
     }
-    const FloatVector size = size_of(way);
+    // Where the square underflows, there is no gap.
+    const FloatVector squared = dot(way, way), size = size_of(way);
     const FloatVector reach =
-        hn::MulAdd(size, hn::Set(d, shape_.error()), shape_.reach(way, size));
-    return {hn::Sub(dot(way, way), reach), hn::Set(d, std::numeric_limits<float>::infinity()),
+        hn::MulAdd(size, hn::Set(d, shape_.error()), shape_.reach(way, hn::Sqrt(squared)));
+    return {hn::Sub(squared, reach), hn::Set(d, std::numeric_limits<float>::infinity()),
             dot(way, shape_.direction()), size};
   }
 
@@ -217,7 +236,13 @@ class MovingTriangles {
   [[nodiscard]] HWY_NOINLINE Gap gap_along(const Vector3& v) const {
     const FloatVector a = dot(v, corner_[0]), b = dot(v, corner_[1]), c = dot(v, corner_[2]);
     const FloatVector size = size_of(v);
-    const FloatVector reach = hn::MulAdd(size, error_, shape_.reach(v, size));
+    // The sum of magnitudes, which is no less, where the length has no square.
+    constexpr float kLeastSquare = 0x1p-100f;
+    const Floats d;
+    const FloatVector square = dot(v, v);
+    const FloatVector length =
+        hn::IfThenElse(hn::Gt(square, hn::Set(d, kLeastSquare)), hn::Sqrt(square), size);
+    const FloatVector reach = hn::MulAdd(size, error_, shape_.reach(v, length));
     return {hn::Sub(hn::Min(a, hn::Min(b, c)), reach), hn::Add(hn::Max(a, hn::Max(b, c)), reach),
             dot(v, shape_.direction()), size};
   }

@@ -68,9 +68,17 @@ InstanceCast::InstanceCast(const UnitCast& cast, const BoundScene::Placed& insta
     around_.axis[i] = placement.vector_to_tree(axis);
     error += around_.half[i] * placement.vector_error(around_.axis[i], axis);
   }
-  around_.radius =
-      (cast.shape.radius + error) / stretch_of(to_world.linear).least * (1 + 16 * kRoundoffF64) +
-      kLengthUnderflow;
+  const Stretch stretch = stretch_of(to_world.linear);
+  constexpr double kUp = 1 + 16 * kRoundoffF64;
+  around_.radius = (cast.shape.radius + error) / stretch.least * kUp + kLengthUnderflow;
+  // The other way round: what is d from the core in tree space is at most stretch.most * d + error
+  // from it in the world, and sides that move by d there move by stretch.least * d or more.
+  placed_.inside.radius =
+      placed_.moving.is_box()
+          ? 0
+          : (cast.shape.radius - error) / (stretch.most * kUp) - kLengthUnderflow;
+  placed_.inside.ratio = stretch.most / stretch.least * kUp;
+  placed_.inside.less = error / stretch.least * kUp + kLengthUnderflow;
 
   placed_.scale = scale_of(line_, tree);
   const bool is_known = std::isnormal(placed_.scale) && is_within_range(start) &&
@@ -78,6 +86,7 @@ InstanceCast::InstanceCast(const UnitCast& cast, const BoundScene::Placed& insta
   if (!is_known) {
     around_ = {};
     around_.radius = kEverywhere;
+    placed_.inside.radius = -1;
     line_ = {tree.frame().origin, Eigen::Vector3d::UnitX(), 0, cast.line.t_max};
     placed_.scale = scale_of(line_, tree);
   }

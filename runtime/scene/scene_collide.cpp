@@ -79,7 +79,7 @@ Result<Visit> visit_touched_faces_in(const BoundScene& scene, const ShapeInTree&
   VisitedFaces visited;
   std::uint32_t last = kNoInstance;
   return visit_touched_in(
-      scene, shape, layers, limits, CastQuery::Wanted::kAll,
+      scene, shape, layers, limits, CastQuery::Wanted::kFaces,
       [&](std::uint32_t instance, const CastQuery&, const CastCandidate& found) {
         if (instance != last) visited = {};
         last = instance;

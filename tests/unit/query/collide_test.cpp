@@ -428,6 +428,88 @@ TEST(CollideWithASphere, HasTheSameBitsByVectors) {
   EXPECT_GT(of_faces, 1'000u);
 }
 
+template <class Shape>
+std::set<std::uint32_t> touched_faces(const Tree& tree, const Shape& shape) {
+  std::set<std::uint32_t> faces;
+  EXPECT_TRUE(collide(tree, shape, [&](const Contact& contact) {
+    faces.insert(contact.face.index);
+    return true;
+  }));
+  return faces;
+}
+
+// Where the faces alone are wanted, vectors see of most that they touch: not of one that does not,
+// or hardly does.
+TEST(OverlapOfShapes, IsWhereContactsAre) {
+  std::mt19937_64 random(13);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  const auto vector = [&] { return Eigen::Vector3d(unit(), unit(), unit()); };
+  std::vector<SourceMesh> meshes = test::all_kinds();
+  SourceMesh strange;
+  strange.name = "strange triangles";
+  for (std::uint32_t f = 0; f < 600; ++f) {
+    for (const Eigen::Vector3f& corner : strange_triangle(random, static_cast<int>(f) % 64)) {
+      for (const float x : corner) strange.positions.f32.push_back(x);
+    }
+    strange.faces.push_back({{3 * f, 3 * f + 1, 3 * f + 2, cooker::kNoCorner}});
+  }
+  meshes.push_back(std::move(strange));
+  constexpr std::array<double, 6> kTiny = {0,
+                                           1e-30,
+                                           1e-45,
+                                           1e-60,
+                                           std::numeric_limits<double>::min(),
+                                           std::numeric_limits<double>::denorm_min()};
+  std::size_t count = 0;
+  for (const SourceMesh& mesh : meshes) {
+    SCOPED_TRACE(mesh.name);
+    for (const test::Encoding& encoding : {test::Encoding{CodecId::kWide8, GeometryId::kArrays},
+                                           test::Encoding{CodecId::kWide4, GeometryId::kExact}}) {
+      const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+      const Tree& tree = cooked.tree;
+      const double size = tree.bounds().diagonal().norm();
+      for (int i = 0; i < 100; ++i) {
+        SCOPED_TRACE(i);
+        const auto face = static_cast<std::uint32_t>(random() % tree.face_count());
+        const Eigen::Vector3d at = test::require(tree.triangle({kNoFaceId, face}, 0)).corner[0];
+        // More than it takes to touch the corner, or less, by down to what rounds away.
+        const double more = 1 + (i % 2 == 0 ? 1 : -1) * std::ldexp(1.0, -2 - i % 53);
+        const double extent = size * std::ldexp(1.0, -1 - i % 9);
+        const auto note = [](std::set<std::uint32_t>& faces) {
+          return [&faces](const FaceRef& found) { return faces.insert(found.index).second; };
+        };
+        const Eigen::Vector3d beside = at + extent * vector(), along = extent * vector();
+        const double where = std::clamp((at - beside).dot(along) / along.squaredNorm(), 0.0, 1.0);
+        const Capsule capsule{beside, beside + along, more * (at - beside - where * along).norm()};
+        std::set<std::uint32_t> overlapped;
+        ASSERT_TRUE(overlap_capsule(tree, capsule, note(overlapped)));
+        ASSERT_EQ(overlapped, touched_faces(tree, capsule));
+        count += overlapped.size();
+
+        // Next to no radius, in double or in float, nearly on the corner.
+        const Capsule thin{at + size * std::ldexp(1.0, -10 - i % 40) * vector() + along,
+                           at + size * std::ldexp(1.0, -10 - i % 40) * vector() - along,
+                           kTiny[static_cast<std::size_t>(i) % kTiny.size()]};
+        overlapped.clear();
+        ASSERT_TRUE(overlap_capsule(tree, thin, note(overlapped)));
+        ASSERT_EQ(overlapped, touched_faces(tree, thin));
+
+        OrientedBox box;
+        box.rotation = Eigen::Quaterniond(unit(), unit(), unit(), unit()).normalized();
+        box.half_extents = extent * vector().cwiseAbs();
+        Eigen::Vector3d corner = box.half_extents.cwiseProduct(vector());
+        corner[i % 3] = more * box.half_extents[i % 3];
+        box.center = at - box.rotation.toRotationMatrix() * corner;
+        overlapped.clear();
+        ASSERT_TRUE(overlap_oriented_box(tree, box, note(overlapped)));
+        ASSERT_EQ(overlapped, touched_faces(tree, box));
+        count += overlapped.size();
+      }
+    }
+  }
+  EXPECT_GT(count, 20'000u);
+}
+
 // Its radius is less than what the middle of its ends rounds.
 TEST(CollideFarFromTheOrigin, ACapsuleWhoseMiddleRoundsMissesNothing) {
   SourceMesh mesh;

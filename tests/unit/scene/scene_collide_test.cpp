@@ -197,6 +197,65 @@ TEST(SceneCollideCases, ASphereHasTheSameBitsByVectors) {
   EXPECT_GT(count, 5'000u);
 }
 
+// Shapes that reach a corner, or hardly do, of instances of any size and shape: what vectors see in
+// tree space to be inside a shape is inside it in the world.
+TEST(SceneCollideCases, OverlapsAreWhereContactsAre) {
+  std::mt19937_64 random(9);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  const auto vector = [&] { return Eigen::Vector3d(unit(), unit(), unit()); };
+  cooker::SceneParts parts;
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    cooker::PlacedTree placed;
+    placed.tree = i % 2;
+    Eigen::Matrix3d turn = Eigen::Quaterniond(unit(), unit(), unit(), unit()).normalized().matrix();
+    if (i % 3 == 1) turn *= Eigen::Vector3d(1, 0.3, 4).asDiagonal();
+    if (i % 3 == 2) turn(0, 1) += 2;  // sheared
+    placed.pose.linear() = std::pow(10.0, unit()) * turn;
+    placed.pose.translation() = 4 * vector();
+    parts.instances.push_back(placed);
+  }
+  const CookedScene cooked =
+      test::cook_scene({test::sphere(16, 24), test::soup(200, 3)}, parts, {CodecId::kWide8});
+  const Scene scene = require(Scene::bind(cooked.file));
+  const std::vector<WorldTriangle> triangles = test::world_triangles(cooked, scene);
+  std::size_t count = 0;
+  for (int i = 0; i < 400; ++i) {
+    SCOPED_TRACE(i);
+    const Triangle& triangle = triangles[random() % triangles.size()].triangle;
+    const Eigen::Vector3d at = triangle.corner[0];
+    const double more = 1 + (i % 2 == 0 ? 1 : -1) * std::ldexp(1.0, -2 - i % 40);
+    const double extent = (triangle.corner[1] - at).norm() * std::ldexp(1.0, i % 5);
+    const auto check = [&](const auto& shape, const auto& overlap) {
+      Faces overlapped, touched;
+      ASSERT_TRUE(overlap(shape, [&](const SceneFace& face) {
+        return overlapped.insert({face.instance, face.face.id}).second;
+      }));
+      ASSERT_TRUE(collide(scene, shape, [&](const SceneContact& contact) {
+        touched.insert({contact.instance, contact.face.id});
+        return true;
+      }));
+      ASSERT_EQ(overlapped, touched);
+      count += touched.size();
+    };
+    const Eigen::Vector3d beside = at + extent * vector(), along = extent * vector();
+    const double where = std::clamp((at - beside).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    check(Capsule{beside, beside + along, more * (at - beside - where * along).norm()},
+          [&](const Capsule& shape, const SceneFaceVisitor& visitor) {
+            return overlap_capsule(scene, shape, visitor);
+          });
+    OrientedBox box;
+    box.rotation = Eigen::Quaterniond(unit(), unit(), unit(), unit()).normalized();
+    box.half_extents = extent * vector().cwiseAbs();
+    Eigen::Vector3d corner = box.half_extents.cwiseProduct(vector());
+    corner[i % 3] = more * box.half_extents[i % 3];
+    box.center = at - box.rotation.toRotationMatrix() * corner;
+    check(box, [&](const OrientedBox& shape, const SceneFaceVisitor& visitor) {
+      return overlap_oriented_box(scene, shape, visitor);
+    });
+  }
+  EXPECT_GT(count, 5'000u);
+}
+
 // The center of a sphere on a face of a mirrored instance: the front is where the pose maps it.
 TEST(SceneCollideCases, AMirrorKeepsTheFront) {
   cooker::SourceMesh floor;
