@@ -62,8 +62,10 @@ MovingTree::MovingTree(std::span<const Box<double>> boxes, const Memory* memory)
   number_eights();
   Eight none;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::ranges::fill(none.low[axis], std::numeric_limits<float>::infinity());
-    std::ranges::fill(none.high[axis], -std::numeric_limits<float>::infinity());
+    std::fill(std::begin(none.low[axis]), std::end(none.low[axis]),
+              std::numeric_limits<float>::infinity());
+    std::fill(std::begin(none.high[axis]), std::end(none.high[axis]),
+              -std::numeric_limits<float>::infinity());
   }
   std::size_t depth = depths_;
   const std::size_t count_of_eights =

@@ -16,6 +16,7 @@ CONDITIONS = {
     "linux": re.compile(r"defined\(__linux__\)|ifdef __linux__|ifdef O_TMPFILE"),
     "macos": re.compile(r"defined\(__APPLE__\)|ifdef __APPLE__|ifdef F_FULLFSYNC"),
     "a later clang": re.compile(r"(?!)"),  # no condition helps
+    "a later libc++": re.compile(r"(?!)"),
     "gnu": re.compile(r"__GNUC__|__clang__|__aarch64__|__has_feature|_MSC_VER|__cpp_lib_bit_cast|_WIN32"),
 }
 USES = {
@@ -29,9 +30,13 @@ USES = {
     # sanitizers and the fuzzers are its.
     "a later clang": r"\bviews::|\branges::(search|search_n|find_end|equal_range|unique|remove|remove_if|partition|"
                      r"stable_partition|rotate|subrange)\b",
+    # Games and robots build these against the libc++ 14 of Debian 12 and of its emscripten, which has none of it.
+    "a later libc++": r"\branges::\w+",
     "gnu": r"__builtin_\w+|__attribute__|__int128|\basm\b|\btypeof\b|__extension__|#pragma GCC",
 }
 USES = {name: re.compile(pattern) for name, pattern in USES.items()}
+# What the cooker alone may use.
+OF_COOKER = ("a later libc++",)
 # Of a build that is for Linux and macOS alone: what reads by assimp (BOXTREE_ASSIMP).
 POSIX_FILES = ("cooker/import/trial.cpp", "cooker/import/recording_io.cpp")
 # Headers that MinGW and MSVC have, too.
@@ -39,8 +44,8 @@ ON_WINDOWS = ("<sys/stat.h>", "<sys/types.h>")
 COMMENT = re.compile(r"//.*$")
 
 
-def uses_without_condition(text, is_posix):
-    """(line number, name of the condition, what was used)"""
+def uses_without_condition(text, allowed):
+    """(line number, name of the condition, what was used), but for conditions that are `allowed`"""
     conditions = []  # for each #if that is open, all its conditions up to here
     for number, line in enumerate(text.splitlines(), 1):
         code = COMMENT.sub("", line)
@@ -61,7 +66,7 @@ def uses_without_condition(text, is_posix):
             for found in use.finditer(code):
                 if found.group() in ON_WINDOWS or CONDITIONS[name].search(around):
                     continue
-                if is_posix and name == "posix":
+                if name in allowed:
                     continue
                 yield number, name, found.group()
 
@@ -90,7 +95,8 @@ def main():
             if path.suffix not in (".h", ".cpp"):
                 continue
             name = path.relative_to(source).as_posix()
-            for number, condition, use in uses_without_condition(path.read_text(encoding="utf-8"), name in POSIX_FILES):
+            allowed = (("posix",) if name in POSIX_FILES else ()) + (OF_COOKER if part == "cooker" else ())
+            for number, condition, use in uses_without_condition(path.read_text(encoding="utf-8"), allowed):
                 faults.append(f"{name}:{number}: {use} outside a condition that says {condition}")
     for fault in faults:
         print(fault)

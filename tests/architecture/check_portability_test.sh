@@ -5,19 +5,27 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir -p "$work/cooker/system"
+mkdir -p "$work/cooker/system" "$work/runtime/tree"
+# expect FAULTS [FOLDER]
 expect() {
-  local faults=$1
-  cat >"$work/cooker/system/subject.cpp"
+  local faults=$1 subject=$work/${2:-cooker/system}/subject.cpp
+  cat >"$subject"
   local found
   found=$(python3 "$here/check_portability.py" "$work" | grep -c "subject.cpp" || true)
-  [ "$found" = "$faults" ] || { echo "expected $faults faults, found $found in:"; cat "$work/cooker/system/subject.cpp"; exit 1; }
+  [ "$found" = "$faults" ] || { echo "expected $faults faults, found $found in:"; cat "$subject"; exit 1; }
+  rm "$subject"
 }
 expect 1 <<'X'
 int file = ::memfd_create("x", 0);
 X
 expect 1 <<'X'
 bool has(auto& a, auto& b) { return !std::ranges::search(a, b).empty() && std::ranges::find(a, 1) != a.end(); }
+X
+expect 1 runtime/tree <<'X'
+void clear(auto& a) { std::ranges::fill(a, 0); }
+X
+expect 0 <<'X'
+void clear(auto& a) { std::ranges::fill(a, 0); }
 X
 expect 1 <<'X'
 #ifdef _WIN32
