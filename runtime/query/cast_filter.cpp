@@ -59,6 +59,7 @@ AxisMotion CastFilter::motion_along(const float (&v)[3]) const noexcept {
   out.extent = float_above(half + radius * size + 3 * size * error);
   out.per_ahead = static_cast<float>((1 - kError) / (speed + doubt));
   out.per_behind = speed > 2 * doubt ? static_cast<float>((1 + kError) / (speed - doubt)) : 0;
+  out.per_return = static_cast<float>((1 - kError) / doubt);
   return out;
 }
 

@@ -20,12 +20,15 @@ struct ConvexAxes {
 };
 
 /// One of the axes, on its own: projections on it overlap from their distance ahead, less `extent`,
-/// times `per_ahead` on, until their distance behind, and `extent`, times `per_behind`.
+/// times `per_ahead` on, until their distance behind, and `extent`, times `per_behind`. Where it
+/// hardly moves along it, what is behind, by more than `extent`, may come back after that times
+/// `per_return`.
 struct AxisMotion {
   bool is_against;   // whether the shape moves against it
   float extent;      // half, of the whole shape, and what projections of boxes are off
   float per_ahead;   // 1 / speed, rounded down
   float per_behind;  // 1 / speed, rounded up; 0 where it hardly moves along it
+  float per_return;  // 1 / what the speed is off, rounded down
 };
 
 /// Boxes are decoded, and rounded no further; see RayBoxFilter.

@@ -55,9 +55,12 @@ class MovingInterval {
     const FloatVector zero = hn::Zero(d);
     const FloatVector later = hn::Div(gap.ahead, hn::Add(gap.speed, gap.doubt));
     enter_ = hn::Max(enter_, hn::IfThenElse(hn::Gt(gap.ahead, zero), later, zero));
+    // What is behind comes back no sooner than by what the speed is off.
     const FloatVector slowest = hn::Sub(gap.speed, gap.doubt);
-    leave_ = hn::Min(leave_, hn::IfThenElse(hn::Gt(slowest, zero), hn::Div(gap.behind, slowest),
-                                            hn::Set(d, kInfinity)));
+    const auto is_moving = hn::Gt(slowest, zero);
+    const FloatVector since = hn::Div(gap.behind, hn::IfThenElse(is_moving, slowest, gap.doubt));
+    leave_ = hn::Min(leave_, hn::IfThenElse(is_moving, since, hn::Set(d, kInfinity)));
+    enter_ = hn::Max(enter_, hn::IfThenElse(is_moving, zero, hn::Neg(since)));
   }
 
   /// By an axis of the shape; the range of what it is compared with.
@@ -67,7 +70,11 @@ class MovingInterval {
     const FloatVector behind = motion.is_against ? hn::Neg(low) : high;
     const FloatVector reach = hn::Set(d, motion.extent);
     enter_ = hn::Max(enter_, hn::Mul(hn::Sub(ahead, reach), hn::Set(d, motion.per_ahead)));
-    if (motion.per_behind == 0) return;
+    if (motion.per_behind == 0) {
+      enter_ =
+          hn::Max(enter_, hn::Mul(hn::Neg(hn::Add(behind, reach)), hn::Set(d, motion.per_return)));
+      return;
+    }
     leave_ = hn::Min(leave_, hn::Mul(hn::Add(behind, reach), hn::Set(d, motion.per_behind)));
   }
 
