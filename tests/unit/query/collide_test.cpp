@@ -19,6 +19,7 @@
 #include "tests/support/contact_bits.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
+#include "tests/support/reaching_shapes.h"
 #include "tests/support/require.h"
 #include "tests/support/shape_reference.h"
 
@@ -442,8 +443,7 @@ std::set<std::uint32_t> touched_faces(const Tree& tree, const Shape& shape) {
 // or hardly does.
 TEST(OverlapOfShapes, IsWhereContactsAre) {
   std::mt19937_64 random(13);
-  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
-  const auto vector = [&] { return Eigen::Vector3d(unit(), unit(), unit()); };
+  test::ReachingShapes shapes(random);
   std::vector<SourceMesh> meshes = test::all_kinds();
   SourceMesh strange;
   strange.name = "strange triangles";
@@ -478,28 +478,22 @@ TEST(OverlapOfShapes, IsWhereContactsAre) {
         const auto note = [](std::set<std::uint32_t>& faces) {
           return [&faces](const FaceRef& found) { return faces.insert(found.index).second; };
         };
-        const Eigen::Vector3d beside = at + extent * vector(), along = extent * vector();
-        const double where = std::clamp((at - beside).dot(along) / along.squaredNorm(), 0.0, 1.0);
-        const Capsule capsule{beside, beside + along, more * (at - beside - where * along).norm()};
+        const Capsule capsule = shapes.capsule(at, extent, more);
         std::set<std::uint32_t> overlapped;
         ASSERT_TRUE(overlap_capsule(tree, capsule, note(overlapped)));
         ASSERT_EQ(overlapped, touched_faces(tree, capsule));
         count += overlapped.size();
 
         // Next to no radius, in double or in float, nearly on the corner.
-        const Capsule thin{at + size * std::ldexp(1.0, -10 - i % 40) * vector() + along,
-                           at + size * std::ldexp(1.0, -10 - i % 40) * vector() - along,
+        const Eigen::Vector3d along = extent * shapes.vector();
+        const double off = size * std::ldexp(1.0, -10 - i % 40);
+        const Capsule thin{at + off * shapes.vector() + along, at + off * shapes.vector() - along,
                            kTiny[static_cast<std::size_t>(i) % kTiny.size()]};
         overlapped.clear();
         ASSERT_TRUE(overlap_capsule(tree, thin, note(overlapped)));
         ASSERT_EQ(overlapped, touched_faces(tree, thin));
 
-        OrientedBox box;
-        box.rotation = Eigen::Quaterniond(unit(), unit(), unit(), unit()).normalized();
-        box.half_extents = extent * vector().cwiseAbs();
-        Eigen::Vector3d corner = box.half_extents.cwiseProduct(vector());
-        corner[i % 3] = more * box.half_extents[i % 3];
-        box.center = at - box.rotation.toRotationMatrix() * corner;
+        const OrientedBox box = shapes.box(at, extent, more);
         overlapped.clear();
         ASSERT_TRUE(overlap_oriented_box(tree, box, note(overlapped)));
         ASSERT_EQ(overlapped, touched_faces(tree, box));

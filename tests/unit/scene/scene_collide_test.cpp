@@ -17,6 +17,7 @@
 #include "runtime/scene/bound_scene.h"
 #include "tests/support/contact_bits.h"
 #include "tests/support/meshes.h"
+#include "tests/support/reaching_shapes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shape_reference.h"
@@ -201,17 +202,17 @@ TEST(SceneCollideCases, ASphereHasTheSameBitsByVectors) {
 // tree space to be inside a shape is inside it in the world.
 TEST(SceneCollideCases, OverlapsAreWhereContactsAre) {
   std::mt19937_64 random(9);
-  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
-  const auto vector = [&] { return Eigen::Vector3d(unit(), unit(), unit()); };
+  test::ReachingShapes shapes(random);
   cooker::SceneParts parts;
   for (std::uint32_t i = 0; i < 24; ++i) {
     cooker::PlacedTree placed;
     placed.tree = i % 2;
-    Eigen::Matrix3d turn = Eigen::Quaterniond(unit(), unit(), unit(), unit()).normalized().matrix();
+    Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(3 * shapes.unit(), shapes.vector().normalized()).toRotationMatrix();
     if (i % 3 == 1) turn *= Eigen::Vector3d(1, 0.3, 4).asDiagonal();
     if (i % 3 == 2) turn(0, 1) += 2;  // sheared
-    placed.pose.linear() = std::pow(10.0, unit()) * turn;
-    placed.pose.translation() = 4 * vector();
+    placed.pose.linear() = std::pow(10.0, shapes.unit()) * turn;
+    placed.pose.translation() = 4 * shapes.vector();
     parts.instances.push_back(placed);
   }
   const CookedScene cooked =
@@ -237,21 +238,14 @@ TEST(SceneCollideCases, OverlapsAreWhereContactsAre) {
       ASSERT_EQ(overlapped, touched);
       count += touched.size();
     };
-    const Eigen::Vector3d beside = at + extent * vector(), along = extent * vector();
-    const double where = std::clamp((at - beside).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    check(Capsule{beside, beside + along, more * (at - beside - where * along).norm()},
+    check(shapes.capsule(at, extent, more),
           [&](const Capsule& shape, const SceneFaceVisitor& visitor) {
             return overlap_capsule(scene, shape, visitor);
           });
-    OrientedBox box;
-    box.rotation = Eigen::Quaterniond(unit(), unit(), unit(), unit()).normalized();
-    box.half_extents = extent * vector().cwiseAbs();
-    Eigen::Vector3d corner = box.half_extents.cwiseProduct(vector());
-    corner[i % 3] = more * box.half_extents[i % 3];
-    box.center = at - box.rotation.toRotationMatrix() * corner;
-    check(box, [&](const OrientedBox& shape, const SceneFaceVisitor& visitor) {
-      return overlap_oriented_box(scene, shape, visitor);
-    });
+    check(shapes.box(at, extent, more),
+          [&](const OrientedBox& shape, const SceneFaceVisitor& visitor) {
+            return overlap_oriented_box(scene, shape, visitor);
+          });
   }
   EXPECT_GT(count, 5'000u);
 }
