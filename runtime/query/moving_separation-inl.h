@@ -280,9 +280,9 @@ class MovingTriangles {
   /// `offset`: from the center to the point of the core at which the search begins, and then to
   /// that which it finds.
   [[nodiscard]] HWY_NOINLINE Vector3 way_from_core(Vector3& offset) const {
-    const Vector3 way = way_from(offset);
-    if (shape_.axes() == 0) return way;
+    if (shape_.axes() == 0) return way_from(offset);
     const Floats d;
+    const Vector3 way = way_from(offset);
     // To the point of the core that is closest to where that way ends.
     const Vector3 end{{hn::Add(offset.at[0], way.at[0]), hn::Add(offset.at[1], way.at[1]),
                        hn::Add(offset.at[2], way.at[2])}};
