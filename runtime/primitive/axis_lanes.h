@@ -36,8 +36,8 @@ struct alignas(16) AxisLanes {
   std::array<double, kCount> lane;
 };
 
-/// Brings numbers, none of them NaN, into [-most, most]. Hardly ever is one outside, so that to look
-/// is cheaper: compilers do not see the minimum of vectors in that of their numbers.
+/// Brings numbers, none of them NaN, into [-most, most]. Hardly ever is one outside, so that to
+/// look is cheaper: compilers do not see the minimum of vectors in that of their numbers.
 inline void clamp_magnitudes(AxisLanes& v, double most) noexcept {
   if (largest_magnitude(v[0], v[1], v[2]) <= most) [[likely]] return;
   for (std::size_t k = 0; k < AxisLanes::kCount; ++k) v[k] = std::clamp(v[k], -most, most);

@@ -41,8 +41,9 @@ struct Interval {
 
 }  // namespace
 
-std::optional<double> first_touch_of_box(const MovingShape& moving, const Triangle& triangle,
-                                         double from, double to) noexcept {
+std::optional<MovingShape::Touch> first_touch_of_box(const MovingShape& moving,
+                                                     const Triangle& triangle, double from,
+                                                     double to) noexcept {
   BoxAxes axes(moving.shape, triangle, relative_to(moving.center_at(from), triangle),
                moving.direction);
   const double error = axes.error() + 2 * moving.doubt;
@@ -53,7 +54,7 @@ std::optional<double> first_touch_of_box(const MovingShape& moving, const Triang
     s = from + interval.enter * (1 - 8 * kRoundoffF64);
     if (!(interval.enter <= interval.leave && s <= to)) return std::nullopt;
   }
-  return s;
+  return MovingShape::Touch{s};
 }
 
 MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& triangle,

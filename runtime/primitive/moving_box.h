@@ -9,9 +9,9 @@
 namespace boxtree {
 
 /// MovingShape::first_touch() of a box.
-[[nodiscard]] std::optional<double> first_touch_of_box(const MovingShape& moving,
-                                                       const Triangle& triangle, double from,
-                                                       double to) noexcept;
+[[nodiscard]] std::optional<MovingShape::Touch> first_touch_of_box(const MovingShape& moving,
+                                                                   const Triangle& triangle,
+                                                                   double from, double to) noexcept;
 /// Likewise contact_at(), where `s` is a result of that.
 [[nodiscard]] MovingShape::Contact contact_of_box(const MovingShape& moving,
                                                   const Triangle& triangle, double s) noexcept;

@@ -2,8 +2,7 @@
 // Spheres and capsules: steps along the line between the closest points (Newton's method on the
 // distance, which is a convex function of s, so that no step goes too far; conservative
 // advancement, Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996, where
-// rounding hides the direction). Boxes: all directions that can separate a box and a triangle, each
-// with the interval of s in which it does not (Gottschalk, Lin, Manocha, "OBBTree", 1996, in time).
+// rounding hides the direction). Boxes: see moving_box.cpp.
 #include "runtime/primitive/moving_shape.h"
 
 #include <algorithm>
@@ -235,8 +234,8 @@ Nearness nearness(const MovingShape& moving, const Corners& corner, CoreGuess gu
   return nearness_of(contact_points(moving.shape, corner, guess));
 }
 
-// From a touch on, where they are `at`: when it is certain that they touch, or when the distance does not
-// fall any more.
+// From a touch on, where they are `at`: when it is certain that they touch, or when the distance
+// does not fall any more.
 double certain_by(const MovingShape& moving, const Triangle& triangle,
                   const MovingShape::Touch& touch, Nearness at,
                   const Eigen::Vector3d& normal) noexcept {
@@ -258,8 +257,7 @@ double certain_by(const MovingShape& moving, const Triangle& triangle,
     double next = is_last ? step + (at.length + 2 * doubt) / speed
                           : std::max(2 * step, 2 * missing * at.length / speed);
     if (!(next < passed)) next = step + (passed - step) / 2;
-    const Nearness there =
-        nearness(moving, placed(moving, triangle, touch.s + next), touch.core);
+    const Nearness there = nearness(moving, placed(moving, triangle, touch.s + next), touch.core);
     if (there.lower > radius + 6 * doubt) {  // it has passed the triangle, or a corner
       if (is_last) break;
       passed = next;
@@ -277,9 +275,9 @@ MovingShape::Contact contact_of_hull(const MovingShape& moving, const Triangle& 
                                      const MovingShape::Touch& touch) noexcept {
   const ConvexShape& shape = moving.shape;
   const Corners corner = placed(moving, triangle, touch.s);
-  const Penetration found =
-      touch.s > 0 ? shape.hull->penetration(shape.hull->point, corner, moving.doubt, &moving.direction)
-            : penetration(shape, corner, moving.doubt);
+  const Penetration found = touch.s > 0 ? shape.hull->penetration(shape.hull->point, corner,
+                                                                  moving.doubt, &moving.direction)
+                                        : penetration(shape, corner, moving.doubt);
   return {moving.center_at(touch.s) + found.point, found.normal, found.feature,
           certain_by(moving, triangle, touch, nearness(moving, corner, touch.core), found.normal)};
 }
@@ -303,10 +301,7 @@ double MovingShape::doubt_of(double near, double far) noexcept {
 
 std::optional<MovingShape::Touch> MovingShape::first_touch(const Triangle& triangle, double from,
                                                            double to) const noexcept {
-  if (is_box()) {
-    const std::optional<double> s = first_touch_of_box(*this, triangle, from, to);
-    return s ? std::optional(Touch{*s}) : std::nullopt;
-  }
+  if (is_box()) return first_touch_of_box(*this, triangle, from, to);
   return shape.hull != nullptr ? first_touch_by_distance(*this, triangle, from, to)
                                : first_touch_of_core(*this, triangle, from, to);
 }

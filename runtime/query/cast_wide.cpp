@@ -140,18 +140,15 @@ class CastLeaves {
   HWY_NOINLINE std::uint32_t surely_touched(std::size_t group) const {
     // More than coordinates less than 16 times as large as the largest that matter round by.
     const float error = shape_.error() + leaf_.corner_error();
-    const Vector3 center = shape_.center_at(hn::Zero(Floats()));
+    const FloatVector zero = hn::Zero(Floats());
     std::uint32_t bits = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
-      const FloatVector zero = hn::Zero(Floats());
+      const MovingTriangles triangles(filter_, leaf_, group, part, zero);
       FloatVector sum = zero;
       std::uint32_t held = 0;
       for (std::size_t c = 0; c < 3; ++c) {
-        Vector3 corner;
-        for (std::size_t k = 0; k < 3; ++k) {
-          corner.at[k] = hn::Sub(leaf_.at(c, k, group, part), center.at[k]);
-          sum = hn::Add(sum, corner.at[k]);
-        }
+        const Vector3& corner = triangles.corner(c);
+        for (std::size_t k = 0; k < 3; ++k) sum = hn::Add(sum, corner.at[k]);
         held |= bits_of(shape_.hold(corner, error));
       }
       // A corner that is not finite, of corrupt bytes, is for the exact test to find.
