@@ -27,16 +27,22 @@ CastFilter::CastFilter(const CastQuery& query) noexcept
     core.half[i] = float_above(shape.half[i] * length);
   }
   for (std::uint32_t i = 0; i < shape.axes; ++i) motion[i] = motion_along(core.axis[i]);
-  if (query.wanted != CastQuery::Wanted::kFaces) return;
+  inside = inside_of(query);
+}
+
+// A hull is not looked into, and what is round has no inside where its radius rounds to nothing.
+InnerFloats CastFilter::inside_of(const CastQuery& query) noexcept {
+  InnerFloats out{};
+  if (query.wanted != CastQuery::Wanted::kFaces || query.moving.shape.hull != nullptr) return out;
   const InnerShape inside =
       query.placed != nullptr ? query.placed->inside : InnerShape{query.shape.radius};
-  // A hull is not looked into, and what is round has no inside where its radius rounds to nothing.
-  const bool is_box = query.moving.is_box() && inside.radius == 0;
   constexpr double kDown = 1 - 8 * kRoundoffF32;
-  inner_radius = is_box ? 0 : static_cast<float>(inside.radius * kDown);
-  if (!is_box && (query.moving.shape.hull != nullptr || !(inner_radius > 0))) inner_radius = -1;
-  inner_ratio = float_above(inside.ratio);
-  inner_less = float_above(inside.less);
+  out.is_box = query.moving.is_box();
+  out.radius = static_cast<float>(inside.radius * kDown);
+  out.ratio = float_above(inside.ratio);
+  out.less = float_above(inside.less);
+  out.is_known = out.is_box ? inside.radius >= 0 : out.radius > 0;
+  return out;
 }
 
 // Along a vector, which is rounded no further. u = 2^-24.

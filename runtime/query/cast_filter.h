@@ -31,6 +31,14 @@ struct AxisMotion {
   float per_return;  // 1 / what the speed is off, rounded down
 };
 
+/// An InnerShape, rounded inward.
+struct InnerFloats {
+  bool is_known;  // if false, nothing is surely inside, or it does not matter
+  bool is_box;
+  float radius;  // unless it is a box
+  float ratio, less;
+};
+
 /// Boxes are decoded, and rounded no further; see RayBoxFilter.
 struct CastFilter : RayBoxFilter {
   /// Whether single precision resolves the parts of a tree for this cast: not from so far away that
@@ -48,11 +56,10 @@ struct CastFilter : RayBoxFilter {
   float direction[3];
   ConvexAxes core;
   AxisMotion motion[3];
-  // See InnerShape, rounded inward; unspecified unless faces alone are wanted. `inner_radius` is 0
-  // for a box, and negative where nothing is inside.
-  float inner_radius, inner_ratio, inner_less;
+  InnerFloats inside;
 
  private:
+  [[nodiscard]] static InnerFloats inside_of(const CastQuery& query) noexcept;
   [[nodiscard]] AxisMotion motion_along(const float (&v)[3]) const noexcept;
 };
 

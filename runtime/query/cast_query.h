@@ -50,7 +50,7 @@ struct CastCandidate {
 
 /// What of the space of a tree is surely inside a shape: what is not farther than `radius` from the
 /// core of Path::shape; of a box, where that has none, what is not farther than r from a core that
-/// is r * ratio + less smaller on all sides.
+/// is r * ratio + less smaller on all sides. Nothing is where `radius` is negative.
 struct InnerShape {
   double radius;
   double ratio = 1;
@@ -64,7 +64,7 @@ struct PlacedCast {
   MovingShape moving;      // in the world
   double scale;            // s of `moving` = it * s of the query in tree space; a power of two
   InactiveEdges inactive;  // see BoundScene::Placed
-  InnerShape inside;       // `radius` is negative where nothing surely is
+  InnerShape inside;
 
   [[nodiscard]] Triangle apply(const Triangle& triangle) const noexcept {
     Triangle placed = to_world.apply(triangle);

@@ -31,11 +31,7 @@ Errc walk_cast(const BoundTree& tree, CastQuery& query) {
 class CastLeaves {
  public:
   CastLeaves(const BoundTree& tree, CastQuery& query, const CastFilter& filter)
-      : query_(query),
-        filter_(filter),
-        shape_(filter),
-        leaf_(tree),
-        are_faces_wanted_(query.wanted == CastQuery::Wanted::kFaces && filter.inner_radius >= 0) {
+      : query_(query), filter_(filter), shape_(filter), leaf_(tree) {
     set_bound();
   }
 
@@ -92,7 +88,7 @@ class CastLeaves {
         hn::Store(leave, Floats(), last + part * kLanes);
       }
       near &= leaf_.lanes(group);
-      const std::uint32_t sure = are_faces_wanted_ ? near & surely_touched(group) : 0;
+      const std::uint32_t sure = filter_.inside.is_known ? near & surely_touched(group) : 0;
       if (near != sure) near = sure | advance(group, near & ~sure, key, last);
       while (near != 0) {
         const std::uint32_t i = take_smallest(near, key);
@@ -276,8 +272,6 @@ class CastLeaves {
   const CastFilter& filter_;
   MovingFloats shape_;
   LeafFloats leaf_;
-  // Whether triangles that surely touch need not be known exactly.
-  const bool are_faces_wanted_;
 #if BOXTREE_FINDS_SPHERE_CONTACTS
   SphereContacts contacts_{query_};
 #endif

@@ -140,16 +140,16 @@ class MovingFloats {
     return reach;
   }
 
-  /// Whether points are surely inside the shape at rest, whose faces alone are wanted. `error`: how
+  /// Whether points are surely inside the shape at rest, whose inside is known. `error`: how
   /// far their coordinates may be off, and more than the distance from the core rounds. Halves have
   /// been rounded up.
   [[nodiscard]] HWY_NOINLINE hn::Mask<Floats> hold(const Vector3& point, float error) const {
     constexpr float kDown = static_cast<float>(1 - 8 * kRoundoffF32);
     const Floats d;
-    const bool is_box = filter_.inner_radius == 0;
+    const InnerFloats& inside = filter_.inside;
     // What is found within 2 errors of the smaller core is within 4.
-    const float smaller = is_box ? 4 * error * filter_.inner_ratio + filter_.inner_less : 0;
-    float within = is_box ? 2 * error : filter_.inner_radius - 2 * error;
+    const float smaller = inside.is_box ? 4 * error * inside.ratio + inside.less : 0;
+    float within = inside.is_box ? 2 * error : inside.radius - 2 * error;
     Vector3 rest = point;
     for (std::uint32_t i = 0; i < axes(); ++i) {
       const float half = filter_.core.half[i] * kDown - smaller;
